@@ -1,0 +1,253 @@
+//! The result: strokes and filled shapes in pixel coordinates.
+
+use kurbo::{Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, Point, Shape, Vec2};
+
+/// Colour of a stroke or fill, sRGB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Color(pub [u8; 3]);
+
+impl Color {
+    /// Black, the colour of ink where the input is grey.
+    pub const BLACK: Self = Self([0, 0, 0]);
+}
+
+/// One piece of a stroke. Arcs are circular (`radii.x == radii.y`, no rotation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Segment {
+    /// A straight piece.
+    Line(Line),
+    /// A circular arc.
+    Arc(Arc),
+    /// A cubic Bezier piece.
+    Cubic(CubicBez),
+}
+
+impl Segment {
+    /// First point.
+    pub fn start(&self) -> Point {
+        match self {
+            Self::Line(l) => l.p0,
+            Self::Arc(a) => arc_point(a, 0.0),
+            Self::Cubic(c) => c.p0,
+        }
+    }
+
+    /// Last point.
+    pub fn end(&self) -> Point {
+        match self {
+            Self::Line(l) => l.p1,
+            Self::Arc(a) => arc_point(a, 1.0),
+            Self::Cubic(c) => c.p3,
+        }
+    }
+
+    /// Point at parameter `t` in `[0, 1]`.
+    pub fn eval(&self, t: f64) -> Point {
+        match self {
+            Self::Line(l) => l.eval(t),
+            Self::Arc(a) => arc_point(a, t),
+            Self::Cubic(c) => c.eval(t),
+        }
+    }
+
+    /// Appends the piece to a path whose current point is its start; arcs become cubics.
+    pub fn append_to(&self, path: &mut BezPath) {
+        match self {
+            Self::Line(l) => path.line_to(l.p1),
+            Self::Arc(a) => path.extend(a.append_iter(1e-3)),
+            Self::Cubic(c) => path.curve_to(c.p1, c.p2, c.p3),
+        }
+    }
+}
+
+fn arc_point(a: &Arc, t: f64) -> Point {
+    a.center + a.radii.x * Vec2::from_angle(a.start_angle + a.sweep_angle * t)
+}
+
+/// The centreline of a stroke.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Centreline {
+    /// A chain of pieces, each starting where the one before ends; `closed` chains end where they start.
+    Path {
+        /// The pieces in drawing order; never empty.
+        segments: Vec<Segment>,
+        /// Whether the last piece ends at the start of the first.
+        closed: bool,
+    },
+    /// A full circle.
+    Circle(Circle),
+    /// A dot: a blob as long as it is wide, drawn by a round cap alone.
+    Dot(Point),
+}
+
+impl Centreline {
+    /// The centreline as a Bezier path. A dot becomes a move and a line to the same point.
+    pub fn to_path(&self) -> BezPath {
+        match self {
+            Self::Path { segments, closed } => {
+                let mut path = BezPath::new();
+                path.move_to(segments[0].start());
+                segments.iter().for_each(|s| s.append_to(&mut path));
+                if *closed {
+                    path.close_path();
+                }
+                path
+            }
+            Self::Circle(c) => c.to_path(1e-3),
+            Self::Dot(p) => BezPath::from_vec(vec![PathEl::MoveTo(*p), PathEl::LineTo(*p)]),
+        }
+    }
+
+    /// First point of the centreline.
+    pub fn start(&self) -> Point {
+        match self {
+            Self::Path { segments, .. } => segments[0].start(),
+            Self::Circle(c) => c.center + Vec2::new(c.radius, 0.0),
+            Self::Dot(p) => *p,
+        }
+    }
+
+    /// Last point of the centreline.
+    pub fn end(&self) -> Point {
+        match self {
+            Self::Path { segments, .. } => segments[segments.len() - 1].end(),
+            _ => self.start(),
+        }
+    }
+
+    /// Whether the end is the start.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Path { closed, .. } => *closed,
+            Self::Circle(_) => true,
+            Self::Dot(_) => false,
+        }
+    }
+
+    /// The same line walked from its end to its start.
+    pub fn reversed(&self) -> Self {
+        let Self::Path { segments, closed } = self else { return self.clone() };
+        let flip = |s: &Segment| match s {
+            Segment::Line(l) => Segment::Line(Line::new(l.p1, l.p0)),
+            Segment::Arc(a) => Segment::Arc(a.reversed()),
+            Segment::Cubic(c) => Segment::Cubic(CubicBez::new(c.p3, c.p2, c.p1, c.p0)),
+        };
+        Self::Path { segments: segments.iter().rev().map(flip).collect(), closed: *closed }
+    }
+
+    /// The same line under a uniform scaling followed by a shift.
+    pub fn transformed(&self, scale: f64, shift: Vec2) -> Self {
+        let map = Affine::translate(shift) * Affine::scale(scale);
+        let segment = |s: &Segment| match s {
+            Segment::Line(l) => Segment::Line(map * *l),
+            Segment::Arc(a) => Segment::Arc(Arc { center: map * a.center, radii: a.radii * scale, ..*a }),
+            Segment::Cubic(c) => Segment::Cubic(map * *c),
+        };
+        match self {
+            Self::Path { segments, closed } => {
+                Self::Path { segments: segments.iter().map(segment).collect(), closed: *closed }
+            }
+            Self::Circle(c) => Self::Circle(Circle::new(map * c.center, c.radius * scale)),
+            Self::Dot(p) => Self::Dot(map * *p),
+        }
+    }
+}
+
+/// A line of the drawing with its pen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    /// Where the pen's centre went.
+    pub centreline: Centreline,
+    /// Pen width in pixels.
+    pub width: f64,
+    /// Ink colour.
+    pub color: Color,
+}
+
+/// A solid region, too wide to be a line; even-odd outline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fill {
+    /// The outline, closed subpaths.
+    pub outline: BezPath,
+    /// Ink colour.
+    pub color: Color,
+}
+
+/// A vector line drawing over a canvas of `width x height` pixels.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Drawing {
+    /// Canvas width in pixels.
+    pub width: f64,
+    /// Canvas height in pixels.
+    pub height: f64,
+    /// Dots per inch, where known.
+    pub dpi: Option<f64>,
+    /// Solid regions, painted first.
+    pub fills: Vec<Fill>,
+    /// Lines.
+    pub strokes: Vec<Stroke>,
+}
+
+impl Drawing {
+    /// An empty drawing on a canvas.
+    pub fn new(width: f64, height: f64) -> Self {
+        Self { width, height, ..Self::default() }
+    }
+
+    /// Number of pieces over all strokes; circles and dots count one.
+    pub fn segment_count(&self) -> usize {
+        let pieces = |s: &Stroke| match &s.centreline {
+            Centreline::Path { segments, .. } => segments.len(),
+            _ => 1,
+        };
+        self.strokes.iter().map(pieces).sum()
+    }
+
+    /// Sum of centreline lengths in pixels.
+    pub fn length(&self) -> f64 {
+        self.strokes.iter().map(|s| s.centreline.to_path().perimeter(1e-3)).sum()
+    }
+
+    /// The same drawing on a canvas `scale` times as large.
+    pub fn scaled(&self, scale: f64) -> Self {
+        let stroke = |s: &Stroke| Stroke {
+            centreline: s.centreline.transformed(scale, Vec2::ZERO),
+            width: s.width * scale,
+            color: s.color,
+        };
+        let fill = |f: &Fill| Fill { outline: Affine::scale(scale) * f.outline.clone(), color: f.color };
+        Self {
+            width: self.width * scale,
+            height: self.height * scale,
+            dpi: self.dpi.map(|d| d * scale),
+            fills: self.fills.iter().map(fill).collect(),
+            strokes: self.strokes.iter().map(stroke).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn reversing_swaps_the_ends_and_keeps_the_length() {
+        let arc = Arc::new((10.0, 10.0), (5.0, 5.0), 0.0, PI, 0.0);
+        let line = Line::new((0.0, 0.0), arc_point(&arc, 0.0));
+        let c = Centreline::Path { segments: vec![Segment::Line(line), Segment::Arc(arc)], closed: false };
+        let r = c.reversed();
+        assert!((r.start() - c.end()).hypot() < 1e-9 && (r.end() - c.start()).hypot() < 1e-9);
+        assert!((r.to_path().perimeter(1e-6) - c.to_path().perimeter(1e-6)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn scaling_scales_lengths_and_widths() {
+        let mut d = Drawing::new(20.0, 10.0);
+        let centreline = Centreline::Circle(Circle::new((5.0, 5.0), 3.0));
+        d.strokes.push(Stroke { centreline, width: 1.5, color: Color::BLACK });
+        let big = d.scaled(2.0);
+        assert!((big.length() - 2.0 * d.length()).abs() < 1e-2);
+        assert_eq!((big.width, big.height, big.strokes[0].width), (40.0, 20.0, 3.0));
+    }
+}

@@ -1,0 +1,90 @@
+//! The one error type of the library.
+
+use std::path::PathBuf;
+
+/// Why an input could not be traced, one variant per failing stage.
+///
+/// Messages do not repeat their cause: print the chain through [`std::error::Error::source`].
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The input could not be read from disk or from standard input.
+    #[error("{input}: cannot be read")]
+    Read {
+        /// The path as given, or `-`.
+        input: String,
+        /// What the operating system said.
+        #[source]
+        cause: std::io::Error,
+    },
+    /// The input was read and is not an image that can be decoded.
+    #[error("{input}: {reason}")]
+    Decode {
+        /// The path as given, or `-`.
+        input: String,
+        /// What is wrong with the bytes, in one line.
+        reason: String,
+    },
+    /// The image claims more pixels than the limit allows.
+    #[error("{input}: {width} x {height} pixels are over the limit of {limit} (raise it with --max-pixels)")]
+    TooLarge {
+        /// The path as given, or `-`.
+        input: String,
+        /// Claimed width in pixels.
+        width: u64,
+        /// Claimed height in pixels.
+        height: u64,
+        /// The limit in pixels.
+        limit: u64,
+    },
+    /// An SVG input has no visible shape.
+    #[error("{input}: the SVG has nothing visible")]
+    NothingVisible {
+        /// The path as given, or `-`.
+        input: String,
+    },
+    /// A field does not fit the image that it is meant for.
+    #[error("the field is {} x {} and the image {} x {} pixels", field.0, field.1, image.0, image.1)]
+    FieldSize {
+        /// Width and height of the field.
+        field: (usize, usize),
+        /// Width and height of the image.
+        image: (usize, usize),
+    },
+    /// A field estimator failed.
+    #[error("the estimator {estimator} failed: {reason}")]
+    Estimate {
+        /// Name of the estimator.
+        estimator: String,
+        /// Its own words.
+        reason: String,
+    },
+    /// An observer refused a stage's result.
+    #[error("vetoed after the {stage} stage: {reason}")]
+    Vetoed {
+        /// The stage whose result was refused.
+        stage: &'static str,
+        /// The observer's reason.
+        reason: String,
+    },
+    /// An option is out of its range.
+    #[error("{option}: {reason}")]
+    Option {
+        /// Name of the option as on the command line, without dashes.
+        option: &'static str,
+        /// The range that it must keep to.
+        reason: String,
+    },
+    /// A result could not be written.
+    #[error("{}: cannot be written", path.display())]
+    Write {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What the operating system said.
+        #[source]
+        cause: std::io::Error,
+    },
+}
+
+/// Result of the library's fallible functions.
+pub type Result<T> = std::result::Result<T, Error>;

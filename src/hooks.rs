@@ -1,0 +1,51 @@
+//! Where a caller can look at, change or refuse what each stage made.
+
+use crate::clean::LineImage;
+use crate::drawing::Drawing;
+use crate::error::Result;
+use crate::field::PolyVectorField;
+use crate::graph::StrokeGraph;
+use crate::streamline::Streamline;
+
+/// Sees each stage's result as it passes and may change it in place; an error stops the trace.
+///
+/// Every method does nothing unless overridden. To refuse a result, return
+/// [`crate::Error::Vetoed`]; [`veto`] builds one.
+#[allow(unused_variables)]
+pub trait Observer {
+    /// After cleaning.
+    ///
+    /// # Errors
+    /// Stops the trace; so for the other methods.
+    fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
+        Ok(())
+    }
+    /// After estimation, or with the caller's own field.
+    #[allow(missing_docs, clippy::missing_errors_doc)]
+    fn on_field(&mut self, image: &LineImage, field: &mut PolyVectorField) -> Result<()> {
+        Ok(())
+    }
+    /// For each streamline; `false` drops it.
+    #[allow(clippy::missing_errors_doc)]
+    fn on_streamline(&mut self, image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
+        Ok(true)
+    }
+    /// After the streamlines have become a graph.
+    #[allow(clippy::missing_errors_doc)]
+    fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {
+        Ok(())
+    }
+    /// After fitting, in pixels of the input.
+    #[allow(clippy::missing_errors_doc)]
+    fn on_drawing(&mut self, drawing: &mut Drawing) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// An observer that lets everything pass.
+impl Observer for () {}
+
+/// The error that refuses a stage's result.
+pub fn veto(stage: &'static str, reason: impl Into<String>) -> crate::Error {
+    crate::Error::Vetoed { stage, reason: reason.into() }
+}

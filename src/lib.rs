@@ -1,0 +1,17 @@
+//! Turns raster line drawings into few, smooth, editable centreline strokes.
+
+pub mod clean;
+pub mod drawing;
+pub mod error;
+pub mod estimate;
+pub mod field;
+pub mod fit;
+pub mod graph;
+pub mod hooks;
+pub mod load;
+pub mod options;
+pub mod pipeline;
+pub mod raster;
+pub mod streamline;
+
+pub use error::{Error, Result};

@@ -1,0 +1,112 @@
+//! The options of a trace, the same in the library and on the command line.
+
+use crate::error::{Error, Result};
+
+/// How ink is told from paper.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Threshold {
+    /// Chosen from the image, locally where the light is uneven.
+    #[default]
+    Auto,
+    /// A fixed darkness in `(0, 1)`: 0 is paper, 1 is black.
+    Fixed(f64),
+}
+
+/// Whether the drawing is light on dark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Invert {
+    /// Decided from the image.
+    #[default]
+    Auto,
+    /// Light lines on a dark ground.
+    Yes,
+    /// Dark lines on a light ground.
+    No,
+}
+
+/// The width that is written for a stroke.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum StrokeWidth {
+    /// Measured for each stroke.
+    #[default]
+    Measured,
+    /// One width for all: the drawing's median.
+    Uniform,
+    /// This many pixels of the input for all.
+    Fixed(f64),
+}
+
+/// What a trace may be told. The defaults are meant to do well on any drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Fit tolerance in line widths: how far a fitted curve may leave the measured centreline. Smaller
+    /// follows the ink more closely and gives more segments. In `[0.01, 2]`.
+    pub detail: f64,
+    /// Strokes shorter than this many line widths are dropped, unless they are dots. In `[0, 1000]`.
+    pub min_length: f64,
+    /// Specks of ink of at most this many pixels are removed; `None` decides from the image.
+    pub despeckle: Option<usize>,
+    /// How ink is told from paper.
+    pub threshold: Threshold,
+    /// Whether the drawing is light on dark.
+    pub invert: Invert,
+    /// The width written for each stroke.
+    pub width: StrokeWidth,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            detail: 0.1,
+            min_length: 0.5,
+            despeckle: None,
+            threshold: Threshold::Auto,
+            invert: Invert::Auto,
+            width: StrokeWidth::Measured,
+        }
+    }
+}
+
+/// Named sets of options for common kinds of drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Pencil and ink sketches: looser curves, more specks removed.
+    Sketch,
+    /// Technical plans: tight fit, small details kept.
+    Plan,
+    /// Icons: tight fit, one width for all strokes.
+    Icon,
+}
+
+impl Options {
+    /// The options of a preset.
+    pub fn preset(preset: Preset) -> Self {
+        let default = Self::default();
+        match preset {
+            Preset::Sketch => Self { detail: 0.2, min_length: 1.5, ..default },
+            Preset::Plan => Self { detail: 0.06, min_length: 0.25, ..default },
+            Preset::Icon => Self { detail: 0.06, width: StrokeWidth::Uniform, ..default },
+        }
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`Error::Option`] names the first option that is out of its range.
+    pub fn validate(&self) -> Result<()> {
+        let within = |option, value: f64, low: f64, high: f64| {
+            let ok = value >= low && value <= high;
+            let reason = format!("{value} is not between {low} and {high}");
+            if ok { Ok(()) } else { Err(Error::Option { option, reason }) }
+        };
+        within("detail", self.detail, 0.01, 2.0)?;
+        within("min-length", self.min_length, 0.0, 1000.0)?;
+        if let Threshold::Fixed(t) = self.threshold {
+            within("threshold", t, 0.001, 0.999)?;
+        }
+        if let StrokeWidth::Fixed(px) = self.width {
+            within("width", px, 0.01, 1000.0)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,119 @@
+//! The whole way from a scan to a drawing.
+
+use crate::clean::{self, LineImage};
+use crate::drawing::Drawing;
+use crate::error::{Error, Result};
+use crate::estimate::{FieldEstimator, StructureTensor};
+use crate::field::{FrameField, PolyVectorField};
+use crate::hooks::Observer;
+use crate::load::Scan;
+use crate::options::Options;
+use crate::{fit, graph, streamline};
+
+/// Traces scans under one set of options and one estimator.
+pub struct Vectorizer {
+    options: Options,
+    estimator: Box<dyn FieldEstimator>,
+}
+
+impl Vectorizer {
+    /// A vectorizer with the default estimator.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when an option is out of its range.
+    pub fn new(options: Options) -> Result<Self> {
+        options.validate()?;
+        Ok(Self { options, estimator: Box::new(StructureTensor::default()) })
+    }
+
+    /// The same with another source of fields.
+    #[must_use]
+    pub fn with_estimator(self, estimator: impl FieldEstimator + 'static) -> Self {
+        Self { estimator: Box::new(estimator), ..self }
+    }
+
+    /// The options.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Traces a scan.
+    ///
+    /// # Errors
+    /// Whatever the estimator says.
+    pub fn trace(&self, scan: &Scan) -> Result<Drawing> {
+        self.trace_observed(scan, &mut ())
+    }
+
+    /// Traces a scan; the observer sees every stage's result and may change or refuse it.
+    ///
+    /// # Errors
+    /// Whatever the estimator or the observer says.
+    pub fn trace_observed(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<Drawing> {
+        let mut image = clean::clean(scan, &self.options);
+        observer.on_line_image(&mut image)?;
+        let field = self.estimate(&image)?;
+        self.follow(scan, &image, field, observer)
+    }
+
+    /// Traces a scan under the caller's own field, given at the scan's size.
+    ///
+    /// # Errors
+    /// [`Error::FieldSize`] when the field's size is not the scan's; whatever the observer says.
+    pub fn trace_with_field(
+        &self,
+        scan: &Scan,
+        field: &PolyVectorField,
+        observer: &mut dyn Observer,
+    ) -> Result<Drawing> {
+        if field.size() != scan.gray.size() {
+            return Err(Error::FieldSize { field: field.size(), image: scan.gray.size() });
+        }
+        let mut image = clean::clean(scan, &self.options);
+        observer.on_line_image(&mut image)?;
+        let (width, height) = image.ink.size();
+        self.follow(scan, &image, field.resized(width, height), observer)
+    }
+
+    /// The field of a scan, at the scan's own size.
+    ///
+    /// # Errors
+    /// Whatever the estimator says.
+    pub fn field(&self, scan: &Scan) -> Result<PolyVectorField> {
+        let image = clean::clean(scan, &self.options);
+        let (width, height) = scan.gray.size();
+        Ok(self.estimate(&image)?.resized(width, height))
+    }
+
+    fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
+        let field = self.estimator.estimate(image)?;
+        if field.size() != image.ink.size() {
+            return Err(Error::FieldSize { field: field.size(), image: image.ink.size() });
+        }
+        Ok(field)
+    }
+
+    fn follow(
+        &self,
+        scan: &Scan,
+        image: &LineImage,
+        mut field: PolyVectorField,
+        observer: &mut dyn Observer,
+    ) -> Result<Drawing> {
+        observer.on_field(image, &mut field)?;
+        let frames = FrameField::new(field);
+        let mut streamlines = Vec::new();
+        for mut streamline in streamline::trace(image, &frames) {
+            if observer.on_streamline(image, &mut streamline)? {
+                streamlines.push(streamline);
+            }
+        }
+        let mut graph = graph::build(image, &frames, &streamlines, &self.options);
+        observer.on_graph(image, &mut graph)?;
+        let mut drawing = fit::fit(image, &graph, &self.options).scaled(1.0 / image.scale);
+        (drawing.width, drawing.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
+        drawing.dpi = scan.dpi;
+        observer.on_drawing(&mut drawing)?;
+        Ok(drawing)
+    }
+}

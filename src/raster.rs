@@ -1,0 +1,166 @@
+//! A plain row-major grid of samples.
+//!
+//! Pixel `(x, y)` covers `[x, x + 1) x [y, y + 1)`, so the centre of the first pixel is `(0.5, 0.5)`.
+
+use image::{GrayImage, ImageBuffer, Luma};
+use kurbo::Point;
+
+/// A `width x height` grid, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Raster<T> {
+    width: usize,
+    height: usize,
+    data: Vec<T>,
+}
+
+/// Ink (`true`) or paper (`false`) per pixel.
+pub type Mask = Raster<bool>;
+
+impl<T: Copy> Raster<T> {
+    /// A grid of one value.
+    pub fn filled(width: usize, height: usize, value: T) -> Self {
+        Self { width, height, data: vec![value; width * height] }
+    }
+
+    /// A grid computed from each pixel's column and row.
+    pub fn from_fn(width: usize, height: usize, mut f: impl FnMut(usize, usize) -> T) -> Self {
+        let mut data = Vec::with_capacity(width * height);
+        for y in 0..height {
+            data.extend((0..width).map(|x| f(x, y)));
+        }
+        Self { width, height, data }
+    }
+
+    /// A grid over existing row-major samples; `None` unless there are `width * height` of them.
+    pub fn from_vec(width: usize, height: usize, data: Vec<T>) -> Option<Self> {
+        (data.len() == width * height).then_some(Self { width, height, data })
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
+    /// All samples, row by row.
+    pub fn data(&self) -> &[T] {
+        &self.data
+    }
+
+    /// All samples, row by row, to be changed in place.
+    pub fn data_mut(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+
+    /// The samples of one row.
+    pub fn row(&self, y: usize) -> &[T] {
+        &self.data[y * self.width..(y + 1) * self.width]
+    }
+
+    /// The sample at a pixel, or `None` outside the grid.
+    pub fn get(&self, x: i64, y: i64) -> Option<T> {
+        let inside = x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height;
+        inside.then(|| self.data[y as usize * self.width + x as usize])
+    }
+
+    /// The sample of the pixel that contains a point, or `None` outside the grid.
+    pub fn at(&self, p: Point) -> Option<T> {
+        self.get(p.x.floor() as i64, p.y.floor() as i64)
+    }
+
+    /// A grid of the same size with each sample mapped.
+    pub fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Raster<U> {
+        Raster { width: self.width, height: self.height, data: self.data.iter().copied().map(f).collect() }
+    }
+}
+
+impl<T> std::ops::Index<(usize, usize)> for Raster<T> {
+    type Output = T;
+    fn index(&self, (x, y): (usize, usize)) -> &T {
+        debug_assert!(x < self.width);
+        &self.data[y * self.width + x]
+    }
+}
+
+impl<T> std::ops::IndexMut<(usize, usize)> for Raster<T> {
+    fn index_mut(&mut self, (x, y): (usize, usize)) -> &mut T {
+        debug_assert!(x < self.width);
+        &mut self.data[y * self.width + x]
+    }
+}
+
+impl Raster<f32> {
+    /// Bilinear interpolation between pixel centres; samples outside the grid count as 0.
+    pub fn sample(&self, p: Point) -> f32 {
+        let (fx, fy) = (p.x - 0.5, p.y - 0.5);
+        let (x, y) = (fx.floor(), fy.floor());
+        let (tx, ty) = ((fx - x) as f32, (fy - y) as f32);
+        let (x, y) = (x as i64, y as i64);
+        if x >= 0 && y >= 0 && x + 1 < self.width as i64 && y + 1 < self.height as i64 {
+            let i = y as usize * self.width + x as usize;
+            let (a, b) = (self.data[i], self.data[i + 1]);
+            let (c, d) = (self.data[i + self.width], self.data[i + self.width + 1]);
+            let top = a + (b - a) * tx;
+            return top + (c + (d - c) * tx - top) * ty;
+        }
+        let v = |x, y| self.get(x, y).unwrap_or(0.0);
+        let top = v(x, y) * (1.0 - tx) + v(x + 1, y) * tx;
+        top * (1.0 - ty) + (v(x, y + 1) * (1.0 - tx) + v(x + 1, y + 1) * tx) * ty
+    }
+
+    /// The grid as an `image` buffer, without copying.
+    pub fn into_image(self) -> ImageBuffer<Luma<f32>, Vec<f32>> {
+        ImageBuffer::from_raw(self.width as u32, self.height as u32, self.data).expect("length is width * height")
+    }
+
+    /// An `image` buffer as a grid, without copying.
+    pub fn from_image(image: ImageBuffer<Luma<f32>, Vec<f32>>) -> Self {
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        Self { width, height, data: image.into_raw() }
+    }
+}
+
+impl Mask {
+    /// The mask as a grey image: ink 255, paper 0.
+    pub fn to_gray_image(&self) -> GrayImage {
+        GrayImage::from_fn(self.width as u32, self.height as u32, |x, y| {
+            Luma([if self[(x as usize, y as usize)] { 255 } else { 0 }])
+        })
+    }
+
+    /// Number of ink pixels.
+    pub fn count(&self) -> usize {
+        self.data.iter().filter(|&&ink| ink).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bilinear_sampling_is_exact_on_a_plane() {
+        let r = Raster::from_fn(7, 5, |x, y| 2.0 * (x as f32 + 0.5) - 3.0 * (y as f32 + 0.5));
+        for (x, y) in [(0.5, 0.5), (1.25, 3.75), (6.4, 4.4), (3.0, 2.0)] {
+            assert!((f64::from(r.sample(Point::new(x, y))) - (2.0 * x - 3.0 * y)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn outside_is_paper() {
+        let r = Raster::filled(3, 3, 1.0f32);
+        assert_eq!(r.sample(Point::new(-2.0, 1.0)), 0.0);
+        assert_eq!(r.sample(Point::new(0.0, 1.5)), 0.5);
+        assert_eq!(r.sample(Point::new(1.5, 1.5)), 1.0);
+        assert_eq!(r.get(3, 0), None);
+    }
+}
