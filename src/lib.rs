@@ -11,6 +11,7 @@ pub mod hooks;
 pub mod load;
 pub mod options;
 pub mod pipeline;
+mod profile;
 pub mod raster;
 pub mod streamline;
 
