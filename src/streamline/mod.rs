@@ -6,11 +6,11 @@
 //! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own).
 
 mod coverage;
-mod heading;
+pub(crate) mod heading;
 mod seeds;
 mod walk;
 
-pub(crate) use heading::Tail;
+pub(crate) use heading::{Tail, angle_between};
 
 use crate::clean::LineImage;
 use crate::field::FrameField;
