@@ -208,9 +208,10 @@ impl Finder<'_> {
         stretch
     }
 
-    /// How far the end may be drawn out: as long as there is ink, at most a good half of a line width.
+    /// How far the end may be drawn out: as long as there is ink, at most a good half of a line width, or three
+    /// where it ran into another line at a small angle.
     fn extension(&self, end: &End) -> f64 {
-        let most = 0.6 * self.image.line_width + 0.5;
+        let most = if end.stop == Stop::Merged { 3.0 } else { 0.6 } * self.image.line_width + 0.5;
         let n = self.lines[end.line].points.len();
         if n < 2 {
             return 0.0;
@@ -276,7 +277,7 @@ impl Finder<'_> {
     /// A line beside the end that its last stretch does not cross, joined to it by ink.
     fn beside(&self, end: &End) -> Option<Contact> {
         let reach = if end.stop == Stop::Merged { 0.75 } else { 0.9 } * self.image.line_width.max(1.5);
-        let from = if end.stop == Stop::Merged { self.lines[end.line].points[end.tip] } else { end.point };
+        let from = end.point;
         for (place, foot, distance) in self.index.near(from, reach) {
             if self.is_own_neighbourhood(end, place) || !self.is_inked(from, foot) {
                 continue;
@@ -322,7 +323,8 @@ impl Finder<'_> {
 
     /// Whether there is ink all the way between two points.
     fn is_inked(&self, a: Point, b: Point) -> bool {
+        let least = if self.image.noise > 0.0 { 0.3 } else { 0.5 };
         let count = ((b - a).hypot() / 0.5).ceil() as usize;
-        (0..=count).all(|k| self.image.ink.sample(a.lerp(b, k as f64 / count.max(1) as f64)) > 0.5)
+        (0..=count).all(|k| self.image.ink.sample(a.lerp(b, k as f64 / count.max(1) as f64)) > least)
     }
 }

@@ -163,14 +163,10 @@ impl Solver<'_> {
         if end.stop == Stop::Border {
             return end.point;
         }
-        let mut edge = -end.width;
-        let mut s = edge;
-        while s < 1.5 {
-            if self.image.ink.sample(end.point + heading * s) >= 0.5 {
-                edge = s;
-            }
-            s += 0.125;
-        }
+        let steps = ((end.width + 0.75) / 0.125) as usize;
+        let along = |k: usize| -end.width + 0.125 * k as f64;
+        let is_paper = |s: f64| self.image.ink.sample(end.point + heading * s) < 0.5;
+        let edge = (0..steps).map(along).find(|&s| is_paper(s)).unwrap_or(0.0);
         // Never past the middle of a short line.
         let half_length = 0.5 * (n as f64 - 1.0) * STEP;
         end.point + heading * (edge - 0.5 * end.width).max(-half_length + 0.25)

@@ -27,8 +27,10 @@ const COVERED: f64 = 0.35;
 /// How far to coast along covered ink in the hope of coming out on its other side, in line widths.
 const COAST_COVERED: f64 = 8.0;
 
-/// A line's middle is inked at least this much; below, the line has ended.
-const INK_END: f32 = 0.5;
+/// A line has ended where its middle has lost this share of its ink: on a clean render a gap of a fraction of a
+/// pixel tells; on a scan the grain must be allowed for.
+const END_CLEAN: f32 = 0.8;
+const END_NOISY: f32 = 0.3;
 
 /// A walk's last point that sat on a single line, and what came after it.
 struct Step {
@@ -46,13 +48,14 @@ pub(super) struct Walker<'a> {
     frames: &'a FrameField,
     coverage: &'a mut Coverage,
     id: u32,
-    /// Running estimate of the line's width.
+    /// Running estimates of the line's width and of the ink in its middle.
     width: f64,
+    core: f32,
 }
 
 impl<'a> Walker<'a> {
     pub fn new(image: &'a LineImage, frames: &'a FrameField, coverage: &'a mut Coverage, id: u32) -> Self {
-        Self { image, frames, coverage, id, width: image.line_width }
+        Self { image, frames, coverage, id, width: image.line_width, core: 1.0 }
     }
 
     /// The width of the line at the end of the last walk.
@@ -72,6 +75,7 @@ impl<'a> Walker<'a> {
             self.width = width.max(1.0);
             start += normal * middle;
         }
+        self.core = self.image.ink.sample(start).max(0.3);
         let first = Step { point: start, heading: seed.tangent, width: self.width, drift: 0.0 };
         let width = self.width;
         let (forward, forward_stop, closed) = self.walk(vec![first], 1);
@@ -106,8 +110,12 @@ impl<'a> Walker<'a> {
                 index,
             });
             let Some(mut next) = self.advance(&steps, covered_from.is_some()) else {
-                let stop = if covered_from.is_some() { Stop::Merged } else { self.stop_at(here.point) };
-                return (steps, stop, false);
+                let Some(from) = covered_from else {
+                    let stop = self.stop_at(here.point);
+                    return (steps, stop, false);
+                };
+                steps.truncate(from.max(known));
+                return (steps, Stop::Merged, false);
             };
             let covering = self.covering(&next, index);
             if let Some(mark) = covering
@@ -136,6 +144,7 @@ impl<'a> Walker<'a> {
             if let Some(from) = covered_from {
                 next.width = f64::NAN;
                 if (steps.len() - from) as f64 * STEP > COAST_COVERED * self.width {
+                    steps.truncate(from.max(known));
                     return (steps, Stop::Merged, false);
                 }
             }
@@ -161,7 +170,11 @@ impl<'a> Walker<'a> {
         let heading = self.next_heading(steps, coasting);
         let mut point = here.point + heading * STEP;
         let normal = Vec2::new(-heading.y, heading.x);
-        let inked = self.image.ink.sample(point) >= INK_END;
+        let end = if self.image.noise > 0.0 { END_NOISY } else { END_CLEAN };
+        let inked = [0.0].iter().any(|k| {
+            let aside = point + normal * (k * self.width);
+            self.image.ink.sample(aside) >= end * self.core
+        });
         let Some(profile) = self.profile(point, normal).filter(|_| inked) else {
             return self.across_break(here.point, heading);
         };
@@ -175,6 +188,7 @@ impl<'a> Walker<'a> {
         if profile.is_single(self.width) {
             width = profile.width().unwrap_or(f64::NAN);
             self.width += 0.04 * (width - self.width);
+            self.core += 0.04 * (self.image.ink.sample(point) - self.core);
         }
         let drift = if width.is_nan() { 0.0 } else { profile.middle().unwrap_or(0.0) };
         Some(Step { point, heading, width, drift })
