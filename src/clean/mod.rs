@@ -36,9 +36,6 @@ pub struct LineImage {
     pub solids: Vec<Fill>,
 }
 
-/// Grain below this is a clean render: nothing is smoothed, so that anti-aliased edges stay exact.
-const CLEAN_NOISE: f64 = 0.012;
-
 /// Cleans a scan.
 ///
 /// A scan without ink gives an empty mask and a line width of 1.
@@ -47,7 +44,6 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
     let paper = paper::paper_level(&light);
     let mut ink = paper::divide(&light, &paper);
     let noise = threshold::grain(&ink);
-    let noise = if noise < CLEAN_NOISE { 0.0 } else { noise };
     if noise > 0.0 {
         // Just enough to join the grain of a pencil line: the half-width of a pixel's own footprint.
         ink = blur(ink, 0.7);

@@ -7,22 +7,33 @@ use imageproc::contrast::otsu_level;
 use imageproc::morphology::Mask as Structure;
 use imageproc::morphology::grayscale_dilate;
 
-/// Spread of the paper's grain, as a share of full ink: from the median absolute difference of neighbours,
-/// which lines, being few, do not move.
+/// Lighter than this share of full ink is paper.
+const PAPER: f32 = 0.1;
+/// A pixel of flat paper deviates by less than this: the rounding of 8-bit values.
+const FLAT: f32 = 0.008;
+/// The grain that a scan has at least; less cannot be told from rounding.
+const LEAST_GRAIN: f64 = 0.01;
+
+/// Spread of the paper's grain, as a share of full ink; 0 for a clean render, whose paper is flat.
 pub(super) fn grain(ink: &Raster<f32>) -> f64 {
-    let mut steps = Vec::new();
-    for y in (0..ink.height()).step_by(3) {
-        let row = ink.row(y);
-        steps.extend(row.windows(2).step_by(2).map(|w| (w[1] - w[0]).abs()));
-    }
-    if steps.is_empty() {
+    let paper = ink.data().iter().filter(|&&i| i < PAPER).count();
+    let flat = ink.data().iter().filter(|&&i| i < FLAT).count();
+    // The paper's level is an upper quantile: of grainy paper, most lies below it.
+    if 5 * flat >= 4 * paper {
         return 0.0;
     }
+    // From neighbours, so that uneven light does not count; of these the median, so that lines do not.
+    let mut steps: Vec<f32> = Vec::new();
+    for y in (0..ink.height()).step_by(3) {
+        steps.extend(ink.row(y).windows(2).step_by(2).map(|w| (w[1] - w[0]).abs()));
+    }
     let middle = steps.len() / 2;
+    // 1.4826 / sqrt(2): the normal law's factor for differences of neighbours.
+    if steps.is_empty() {
+        return LEAST_GRAIN;
+    }
     let median = *steps.select_nth_unstable_by(middle, f32::total_cmp).1;
-    // Half of the grain is cut off at the paper's level, which the clamp in the division turns into zeros;
-    // 1.4826 / sqrt(2) is the normal law's factor for differences of neighbours.
-    f64::from(median) * 1.05
+    (1.05 * f64::from(median)).max(LEAST_GRAIN)
 }
 
 /// The coverage from which a normalised pixel counts as ink. A clean render's thin lines spread over two

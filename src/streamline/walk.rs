@@ -30,7 +30,7 @@ const COAST_COVERED: f64 = 8.0;
 /// A line has ended where its middle has lost this share of its ink: on a clean render a gap of a fraction of a
 /// pixel tells; on a scan the grain must be allowed for.
 const END_CLEAN: f32 = 0.8;
-const END_NOISY: f32 = 0.3;
+const END_NOISY: f32 = 0.5;
 
 /// A walk's last point that sat on a single line, and what came after it.
 struct Step {
