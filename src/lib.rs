@@ -8,10 +8,13 @@ pub mod field;
 pub mod fit;
 pub mod graph;
 pub mod hooks;
+pub mod inspect;
 pub mod load;
 pub mod options;
 pub mod pipeline;
 pub mod raster;
+pub mod render;
 pub mod streamline;
+pub mod write;
 
 pub use error::{Error, Result};
