@@ -1,1 +1,30 @@
-fn main() {}
+//! `trace`: turns raster line drawings into editable strokes.
+
+mod args;
+mod failure;
+mod field;
+mod target;
+mod vectorize;
+mod watch;
+
+use args::{Cli, Command};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("trace: {failure}");
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn run(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        Some(Command::Field(args)) => field::run(&args),
+        None => vectorize::run(&cli.trace),
+    }
+}
