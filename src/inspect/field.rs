@@ -1,6 +1,6 @@
 //! Ink and field.
 
-use super::overlay::{DECIMALS, Overlay, embedded, entry};
+use super::overlay::{DECIMALS, Overlay, embedded, entry, png_scale};
 use crate::clean::LineImage;
 use crate::field::{Frame, FrameField, PolyVectorField};
 use crate::load::Scan;
@@ -13,18 +13,22 @@ use svg::node::element::{Group, Path};
 
 /// Most frames that are drawn; beyond it, the grid of drawn pixels gets coarser.
 const MOST_TICKS: usize = 30_000;
+/// Pixels of the PNG that a tick should have, and the coarsest grid that it may cost.
+const TICK_LENGTH: f64 = 8.0;
+const COARSEST: f64 = 3.0;
 /// Steps of confidence that can be told apart.
 const SHADES: usize = 4;
 const U_COLOR: &str = "#d00000";
 const V_COLOR: &str = "#0050d0";
 
-/// What cleaning made of a scan, in pixels of the line image: ink of lines in black, solid regions in
+/// What cleaning made of a scan, a whole number of times the size of the line image: ink of lines in black, solid regions in
 /// orange, and ink that was thrown away in pale blue.
 pub fn ink_picture(image: &LineImage) -> RgbImage {
     let (width, height) = image.ink.size();
     let solid = solid_coverage(image);
-    RgbImage::from_fn(width as u32, height as u32, |x, y| {
-        let at = (x as usize, y as usize);
+    let scale = png_scale(width as f64, height as f64) as usize;
+    RgbImage::from_fn((width * scale) as u32, (height * scale) as u32, |x, y| {
+        let at = (x as usize / scale, y as usize / scale);
         if image.mask[at] {
             Rgb([0, 0, 0])
         } else if solid.as_ref().is_some_and(|s| s[at]) {
@@ -52,8 +56,10 @@ pub fn field_overlay(scan: &Scan, field: &PolyVectorField) -> String {
     let defined = field.confidence().data().iter().filter(|&&c| c > 0.0).count();
     if width * height > 0.0 && defined > 0 {
         overlay.add(embedded(&DynamicImage::ImageRgba8(shade(field)), width, height));
-        let step = (defined as f64 / MOST_TICKS as f64).sqrt().ceil().max(1.0) as usize;
-        overlay.add(ticks(field, step, width / field.size().0 as f64));
+        let pixel = width / field.size().0 as f64;
+        let seen = (TICK_LENGTH / (png_scale(width, height) * pixel)).clamp(1.0, COARSEST);
+        let step = (defined as f64 / MOST_TICKS as f64).sqrt().max(seen).ceil() as usize;
+        overlay.add(ticks(field, step, pixel));
     }
     overlay.finish(&[
         entry(U_COLOR, "u, the stronger root"),
@@ -67,7 +73,7 @@ fn shade(field: &PolyVectorField) -> RgbaImage {
     let (width, height) = field.size();
     RgbaImage::from_fn(width as u32, height as u32, |x, y| {
         let confidence = field.confidence()[(x as usize, y as usize)];
-        Rgba([255, 200, 0, (200.0 * confidence) as u8])
+        Rgba([255, 200, 0, (120.0 * confidence) as u8])
     })
 }
 

@@ -15,8 +15,9 @@ use usvg::fontdb::{Database, FaceInfo, Family, Query};
 
 /// Decimals in overlays: they are for the eye.
 pub(super) const DECIMALS: usize = 3;
-/// The longer side up to which a PNG is enlarged.
-const PNG_SIDE: f32 = 2400.0;
+/// The longer side up to which a PNG is enlarged, at most [`MOST_SCALE`] times.
+const PNG_SIDE: f64 = 2400.0;
+const MOST_SCALE: f64 = 8.0;
 
 /// What one entry of a legend says.
 pub(super) struct Entry {
@@ -49,9 +50,9 @@ impl Overlay {
         overlay
     }
 
-    /// A length that can be seen and hides little: a part of the input's size.
+    /// A length that can be seen and hides little: a few pixels of the PNG.
     pub(super) fn unit(&self) -> f64 {
-        (self.width.max(self.height) / 900.0).clamp(0.4, 4.0)
+        2.4 / png_scale(self.width, self.height)
     }
 
     /// The input's size.
@@ -113,7 +114,7 @@ fn legend_strip(entries: &[Entry], width: f64, top: f64, font: f64) -> (Group, f
 
 /// The input in pale colours.
 fn lightened(scan: &Scan) -> RgbImage {
-    let pale = |v: u8| 150 + (u16::from(v) * 105 / 255) as u8;
+    let pale = |v: u8| 185 + (u16::from(v) * 70 / 255) as u8;
     RgbImage::from_fn(scan.gray.width() as u32, scan.gray.height() as u32, |x, y| match &scan.rgb {
         Some(rgb) => Rgb(rgb.get_pixel(x, y).0.map(pale)),
         None => Rgb([pale((scan.gray[(x as usize, y as usize)].clamp(0.0, 1.0) * 255.0).round() as u8); 3]),
@@ -174,7 +175,12 @@ pub(super) fn color(i: usize) -> String {
     format!("#{:02x}{:02x}{:02x}", channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
 }
 
-/// An SVG as a PNG picture; small ones are enlarged, up to four times.
+/// How many times a PNG of this size is enlarged.
+pub(super) fn png_scale(width: f64, height: f64) -> f64 {
+    (PNG_SIDE / width.max(height)).floor().clamp(1.0, MOST_SCALE)
+}
+
+/// An SVG as a PNG picture; small ones are enlarged, up to eight times.
 ///
 /// # Errors
 /// [`Error::Decode`] when the text is not an SVG that can be drawn.
@@ -182,8 +188,7 @@ pub fn to_png(svg: &str) -> Result<Vec<u8>> {
     let decode = |reason: String| Error::Decode { input: "the overlay".into(), reason };
     let options = usvg::Options { fontdb: fonts(), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|e| decode(e.to_string()))?;
-    let side = tree.size().width().max(tree.size().height());
-    let scale = (PNG_SIDE / side).floor().clamp(1.0, 4.0);
+    let scale = png_scale(tree.size().width().into(), tree.size().height().into()) as f32;
     let pixels = |side: f32| (side * scale).ceil() as u32;
     let mut pixmap = resvg::tiny_skia::Pixmap::new(pixels(tree.size().width()), pixels(tree.size().height()))
         .ok_or_else(|| decode("it is too large to be drawn".into()))?;

@@ -8,12 +8,12 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  trace scan.png                         writes scan.svg
-  trace scan.jpg -o drawing.svg          names the output
-  trace - -o - < scan.tif > out.svg      reads standard input, writes standard output
-  trace plan.tif --preset plan --dpi 300 a plan, sized in millimetres
-  trace sketch.png --debug-dir look      also writes a picture of each stage to look/
-  trace field scan.png -o field.npz      the direction field alone
+  trace scan.png                          writes scan.svg
+  trace scan.jpg -o drawing.svg           names the output
+  trace - -o - < scan.tif > out.svg       reads standard input, writes standard output
+  trace plan.tif --preset plan --dpi 300  a plan, sized in millimetres
+  trace sketch.png --debug-dir look       also writes a picture of each stage to look/
+  trace field scan.png -o field.npz       the direction field alone
 
 A file whose name is that of a subcommand is given as ./field.
 Exit codes: 0 done, 1 the file could not be traced, 2 wrong usage.";
@@ -97,7 +97,7 @@ pub(crate) struct FieldArgs {
 pub(crate) struct LoadArgs {
     /// Dots per inch, in place of what the input says; sizes the output in millimetres, and an SVG
     /// input's rendering in pixels
-    #[arg(long, value_name = "DPI", value_parser = parse_dpi)]
+    #[arg(long, value_name = "DPI", value_parser = parse_dpi, allow_negative_numbers = true)]
     dpi: Option<f64>,
     /// Pixels along the longer side of an SVG input's rendering
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(1..=65535))]
@@ -123,7 +123,7 @@ pub(crate) struct CleanArgs {
     #[arg(long, value_name = "KIND")]
     preset: Option<Preset>,
     /// Darkness from which a pixel is ink: `auto`, or between 0 (paper) and 1 (black) [default: auto]
-    #[arg(long, value_name = "T", value_parser = parse_threshold)]
+    #[arg(long, value_name = "T", value_parser = parse_threshold, allow_negative_numbers = true)]
     threshold: Option<Threshold>,
     /// Whether the lines are lighter than the ground [default: auto]
     #[arg(long, value_name = "WHEN", value_parser = parse_invert)]
@@ -139,14 +139,14 @@ pub(crate) struct CleanArgs {
 pub(crate) struct FitArgs {
     /// How far a curve may leave the ink's centre, in line widths: less follows closer, with more
     /// pieces [default: 0.1]
-    #[arg(long, value_name = "W", value_parser = parse_number)]
+    #[arg(long, value_name = "W", value_parser = parse_number, allow_negative_numbers = true)]
     detail: Option<f64>,
     /// Drop strokes shorter than this many line widths, unless they are dots [default: 0.5]
-    #[arg(long, value_name = "W", value_parser = parse_number)]
+    #[arg(long, value_name = "W", value_parser = parse_number, allow_negative_numbers = true)]
     min_length: Option<f64>,
     /// Stroke widths: `measured` for each, `uniform` for the drawing's median, or a number of pixels
     /// [default: measured]
-    #[arg(long, value_name = "WIDTH", value_parser = parse_width)]
+    #[arg(long, value_name = "WIDTH", value_parser = parse_width, allow_negative_numbers = true)]
     width: Option<StrokeWidth>,
 }
 

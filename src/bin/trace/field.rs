@@ -35,12 +35,12 @@ pub(crate) fn run(args: &FieldArgs) -> Result<(), Failure> {
     let field = vectorizer.field(&scan).map_err(failed)?;
     let defined = field.confidence().data().iter().filter(|&&c| c > 0.0).count();
     stages.done("estimate", || format!("{defined} pixels with directions"));
-    if defined == 0 && !args.talk.quiet {
-        eprintln!("trace: {name}: warning: no ink was found, the field is empty");
-    }
     let bytes = encode(&scan, &field, format, &args.output).map_err(failed)?;
     write_file(&args.output, &bytes).map_err(failed)?;
     stages.done("write", || format!("{} bytes to {}", bytes.len(), target::name(&args.output)));
+    if defined == 0 && !args.talk.quiet {
+        eprintln!("trace: {name}: warning: no ink was found, the field is empty");
+    }
     Ok(())
 }
 

@@ -23,12 +23,12 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     let scan = load(input, &args.load.options()).map_err(failed)?.scan;
     stages.done("load", || format!("{} x {} pixels", scan.gray.width(), scan.gray.height()));
     let drawing = trace(&vectorizer, &scan, args.debug_dir.as_deref(), &mut stages).map_err(failed)?;
-    if drawing.strokes.is_empty() && drawing.fills.is_empty() && !args.talk.quiet {
-        eprintln!("trace: {name}: warning: no ink was found, the drawing is empty");
-    }
     let svg = to_svg(&drawing, &SvgOptions { precision: args.precision, title: title(input) });
     write_file(&output, svg.as_bytes()).map_err(failed)?;
     stages.done("write", || format!("{} bytes to {}", svg.len(), target::name(&output)));
+    if drawing.strokes.is_empty() && drawing.fills.is_empty() && !args.talk.quiet {
+        eprintln!("trace: {name}: warning: no ink was found, the drawing is empty");
+    }
     Ok(())
 }
 
