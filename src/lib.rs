@@ -12,6 +12,7 @@ pub mod inspect;
 pub mod load;
 pub mod options;
 pub mod pipeline;
+mod profile;
 pub mod raster;
 pub mod render;
 pub mod streamline;

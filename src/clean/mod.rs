@@ -1,9 +1,21 @@
-//! From a scan to the ink that is to be traced.
+//! From a scan to the ink that is to be traced: evenly lit, thresholded, despeckled, at a known line width.
+
+mod paper;
+mod resample;
+mod solids;
+mod specks;
+mod threshold;
+mod width;
+
+pub(crate) use width::is_ridge;
 
 use crate::drawing::Fill;
 use crate::load::Scan;
-use crate::options::Options;
+use crate::options::{Invert, Options};
 use crate::raster::{Mask, Raster};
+use image::{ImageBuffer, Luma};
+use imageproc::distance_transform::euclidean_squared_distance_transform;
+use imageproc::filter::gaussian_blur_f32;
 
 /// The ink of a drawing, evenly lit and at a size that the later stages know.
 #[derive(Clone, Debug)]
@@ -12,20 +24,90 @@ pub struct LineImage {
     pub ink: Raster<f32>,
     /// The pixels that count as ink of lines; solid regions are not among them.
     pub mask: Mask,
+    /// Half line width at each mask pixel's nearest edge: distance to the nearest paper pixel centre.
+    pub depth: Raster<f32>,
     /// Typical line width in pixels of this raster.
     pub line_width: f64,
     /// Pixels of this raster per pixel of the scan.
     pub scale: f64,
-    /// Whether the input was binary or a clean render, without noise to be smoothed over.
+    /// Standard deviation of the paper's grain as a share of the ink; 0 for a clean render.
     pub noise: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
 }
 
+/// Grain below this is a clean render: nothing is smoothed, so that anti-aliased edges stay exact.
+const CLEAN_NOISE: f64 = 0.012;
+
 /// Cleans a scan.
+///
+/// A scan without ink gives an empty mask and a line width of 1.
 pub fn clean(scan: &Scan, options: &Options) -> LineImage {
-    let _ = options;
-    let ink = scan.gray.map(|g| 1.0 - g);
-    let mask = ink.map(|i| i > 0.5);
-    LineImage { ink, mask, line_width: 3.0, scale: 1.0, noise: 0.0, solids: Vec::new() }
+    let light = upright(&scan.gray, options.invert);
+    let paper = paper::paper_level(&light);
+    let mut ink = paper::divide(&light, &paper);
+    let noise = threshold::grain(&ink);
+    let noise = if noise < CLEAN_NOISE { 0.0 } else { noise };
+    if noise > 0.0 {
+        // Just enough to join the grain of a pencil line: the half-width of a pixel's own footprint.
+        ink = blur(ink, 0.7);
+    }
+    let (mut ink, mut mask) = threshold::binarise(ink, noise, options.threshold);
+    let mut depth = depth(&mask);
+    let mut line_width = width::line_width(&ink, &mask, &depth);
+    let scale = resample::scale_for(&ink, &mask, &depth, line_width);
+    if scale != 1.0 {
+        ink = resample::resize(ink, scale);
+        mask = ink.map(|i| i > threshold::level(noise));
+        depth = self::depth(&mask);
+        line_width = width::line_width(&ink, &mask, &depth);
+    }
+    specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
+    let solids = solids::take(&mut mask, &ink, &depth, line_width);
+    let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
+    LineImage { ink, mask, depth, line_width, scale, noise, solids }
+}
+
+/// Lightness with dark lines on light paper.
+fn upright(gray: &Raster<f32>, invert: Invert) -> Raster<f32> {
+    let invert = match invert {
+        Invert::Yes => true,
+        Invert::No => false,
+        Invert::Auto => is_light_on_dark(gray),
+    };
+    if invert { gray.map(|g| 1.0 - g) } else { gray.clone() }
+}
+
+/// Lines cover little, so the more common side of the middle of the tonal range is the paper.
+fn is_light_on_dark(gray: &Raster<f32>) -> bool {
+    let mut values: Vec<f32> = gray.data().iter().step_by((gray.data().len() / 20_000).max(1)).copied().collect();
+    if values.is_empty() {
+        return false;
+    }
+    values.sort_by(f32::total_cmp);
+    let at = |q: f64| values[((values.len() - 1) as f64 * q) as usize];
+    let (low, middle, high) = (at(0.002), at(0.5), at(0.998));
+    // A photographed page may be dim; only a page near the dark end of its own range, and dark, is inverted.
+    middle < 0.5 && middle - low < 0.4 * (high - low)
+}
+
+/// Distance of each mask pixel's centre to the nearest paper pixel's centre; 0 on paper.
+///
+/// The outside of the image counts as ink, so a line that leaves the image keeps its width.
+fn depth(mask: &Mask) -> Raster<f32> {
+    let (width, height) = mask.size();
+    if mask.count() == width * height {
+        return Raster::filled(width, height, width.max(height) as f32);
+    }
+    let paper = ImageBuffer::from_fn(width as u32, height as u32, |x, y| {
+        Luma([if mask[(x as usize, y as usize)] { 0u8 } else { 255 }])
+    });
+    let squared = euclidean_squared_distance_transform(&paper);
+    Raster::from_vec(width, height, squared.into_raw().into_iter().map(|d| d.sqrt() as f32).collect())
+        .expect("the transform keeps the size")
+}
+
+/// Gaussian blur.
+fn blur(raster: Raster<f32>, sigma: f32) -> Raster<f32> {
+    Raster::from_image(gaussian_blur_f32(&raster.into_image(), sigma))
 }

@@ -1,5 +1,9 @@
 //! From ink to a 2-PolyVector field.
 
+mod tensor;
+
+pub use tensor::StructureTensor;
+
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::PolyVectorField;
@@ -14,19 +18,4 @@ pub trait FieldEstimator: Send + Sync {
     /// # Errors
     /// [`crate::Error::Estimate`] when no field can be given.
     fn estimate(&self, image: &LineImage) -> Result<PolyVectorField>;
-}
-
-/// The field from local gradients, without a network.
-#[derive(Clone, Debug, Default)]
-pub struct StructureTensor;
-
-impl FieldEstimator for StructureTensor {
-    fn name(&self) -> &str {
-        "tensor"
-    }
-
-    fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
-        let (w, h) = image.ink.size();
-        Ok(PolyVectorField::from_directions(w, h, |_, _| None))
-    }
 }

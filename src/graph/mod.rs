@@ -1,5 +1,19 @@
 //! From streamlines to the stroke graph.
+//!
+//! A streamline runs straight through crossings and, at its ends, over the middle of whatever stopped it up to
+//! the far edge of the ink. Here each end is resolved: against the body of another line it is a tee, against
+//! other ends a corner or a branch, in the open a free end half a width short of the edge. Then arms are paired
+//! into strokes.
 
+mod assemble;
+mod contacts;
+mod ends;
+mod nodes;
+
+use crate::clean::LineImage;
+use crate::field::FrameField;
+use crate::options::Options;
+use crate::streamline::Streamline;
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
 
@@ -8,9 +22,9 @@ use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
 pub enum JunctionKind {
     /// One line ends in the open.
     FreeEnd,
-    /// Two lines end at each other and turn.
+    /// Two lines end at each other.
     Corner,
-    /// One line ends at the body of another.
+    /// One or more lines end at the body of another.
     Tee,
     /// Two lines pass through each other.
     Crossing,
@@ -58,12 +72,49 @@ pub struct StrokeGraph {
     pub dots: Vec<(Point, f64)>,
 }
 
+impl StrokeGraph {
+    /// Points and widths along a trail, and whether each point is a corner: a node at which two lines end.
+    pub(crate) fn walk(&self, trail: &Trail) -> Vec<TrailPoint> {
+        let mut walk: Vec<TrailPoint> = Vec::new();
+        for &(edge, reversed) in &trail.edges {
+            let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
+                continue;
+            };
+            let points = e.points.iter().zip(&e.widths).map(|(&point, &width)| TrailPoint { point, width, corner: false });
+            let mut piece: Vec<TrailPoint> = points.collect();
+            let corner = |node: petgraph::graph::NodeIndex| matches!(self.graph[node].kind, JunctionKind::Corner | JunctionKind::Branch);
+            if let [first, .., last] = piece.as_mut_slice() {
+                (first.corner, last.corner) = (corner(a), corner(b));
+            }
+            if reversed {
+                piece.reverse();
+            }
+            // The node is the last point of one edge and the first of the next.
+            let skip = usize::from(!walk.is_empty());
+            walk.extend(piece.into_iter().skip(skip));
+        }
+        walk
+    }
+}
+
+/// A point along a trail.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TrailPoint {
+    pub point: Point,
+    /// Ink width in pixels; NaN where it cannot be measured.
+    pub width: f64,
+    /// Whether the line may turn sharply here.
+    pub corner: bool,
+}
+
 /// Builds the stroke graph.
-pub fn build(
-    _image: &crate::clean::LineImage,
-    _frames: &crate::field::FrameField,
-    _streamlines: &[crate::streamline::Streamline],
-    _options: &crate::options::Options,
-) -> StrokeGraph {
-    StrokeGraph::default()
+pub fn build(image: &LineImage, frames: &FrameField, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
+    let _ = frames;
+    let (dots, lines) = ends::split_dots(image, streamlines);
+    let ends = ends::ends(image, &lines);
+    let contacts = contacts::contacts(image, &lines, &ends);
+    let resolved = nodes::resolve(image, &lines, &ends, &contacts);
+    let mut graph = assemble::assemble(image, &lines, &ends, &resolved, options);
+    graph.dots = dots;
+    graph
 }

@@ -1,6 +1,33 @@
 //! From a field and the ink to streamlines.
+//!
+//! Direction comes from the field, position from the ink: a walk follows the root nearest to its heading and is
+//! pulled back to the middle of the ink at each step, except inside junctions, where the cross profile says
+//! nothing about the line that is being followed. A streamline covers ink for its own direction only, so others
+//! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own).
 
+mod coverage;
+pub(crate) mod heading;
+mod seeds;
+mod walk;
+
+pub(crate) use heading::{Tail, angle_between};
+
+use crate::clean::LineImage;
+use crate::field::FrameField;
+use coverage::Coverage;
 use kurbo::Point;
+use walk::Walker;
+
+/// Why a walk stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stop {
+    /// The ink ended.
+    InkEnd,
+    /// It ran into ink that another streamline, or an earlier part of its own, covers in the same direction.
+    Merged,
+    /// The line left the image.
+    Border,
+}
 
 /// A traced centreline: points about half a pixel apart.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,9 +38,30 @@ pub struct Streamline {
     pub widths: Vec<f64>,
     /// Whether the last point joins the first.
     pub closed: bool,
+    /// Why the walk stopped at the first and at the last point; of no meaning when closed.
+    pub stops: [Stop; 2],
 }
 
-/// Traces the ink along the field.
-pub fn trace(_image: &crate::clean::LineImage, _frames: &crate::field::FrameField) -> Vec<Streamline> {
-    Vec::new()
+/// Distance between points, in pixels.
+pub(crate) const STEP: f64 = 0.5;
+
+/// Traces all ink along the field, most certain seeds first.
+pub fn trace(image: &LineImage, frames: &FrameField) -> Vec<Streamline> {
+    let mut coverage = Coverage::new(&image.mask, image.line_width);
+    let mut streamlines = Vec::new();
+    for seed in seeds::seeds(image, frames) {
+        if coverage.is_painted(seed.point) {
+            continue;
+        }
+        let id = streamlines.len() as u32;
+        let streamline = Walker::new(image, frames, &mut coverage, id).trace(&seed);
+        let fresh = coverage.paint(&streamline.points, &streamline.widths);
+        // Less ink of its own than half a dot: a bump on another line's edge.
+        if (fresh as f64) < 0.4 * image.line_width * image.line_width {
+            coverage.forget(id);
+        } else {
+            streamlines.push(streamline);
+        }
+    }
+    streamlines
 }

@@ -1,0 +1,85 @@
+//! The lightness of the paper, which uneven light makes a smooth function of place.
+
+use super::blur;
+use crate::raster::Raster;
+
+/// Side of the cells in which paper is measured, in pixels: several line widths, so that most of a cell is paper.
+const CELL: usize = 16;
+/// Darker than this share of the page's lightest paper is not paper but a solid region.
+const SOLID_SHARE: f32 = 0.55;
+
+/// Paper lightness on a coarse grid of one sample per [`CELL`] x [`CELL`] pixels.
+pub(super) struct Paper(Raster<f32>);
+
+/// Measures the paper: an upper quantile per cell, solid regions bridged, smoothed.
+pub(super) fn paper_level(light: &Raster<f32>) -> Paper {
+    let (columns, rows) = (light.width().div_ceil(CELL), light.height().div_ceil(CELL));
+    let cells = Raster::from_fn(columns, rows, |cx, cy| cell_quantile(light, cx * CELL, cy * CELL));
+    let mut sorted = cells.data().to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let lightest = sorted[(sorted.len() - 1) * 9 / 10].max(1e-3);
+    // Normalised convolution: cells that are not paper take their neighbours' level.
+    let weight = cells.map(|c| if c > SOLID_SHARE * lightest { 1.0f32 } else { 1e-4 });
+    let weighted = Raster::from_fn(columns, rows, |x, y| {
+        let level = if cells[(x, y)] > SOLID_SHARE * lightest { cells[(x, y)] } else { lightest };
+        level * weight[(x, y)]
+    });
+    let (weighted, weight) = (blur(weighted, 1.2), blur(weight, 1.2));
+    Paper(Raster::from_fn(columns, rows, |x, y| weighted[(x, y)] / weight[(x, y)]))
+}
+
+/// Upper quantile of one cell, taken over twice the cell so that neighbours agree.
+fn cell_quantile(light: &Raster<f32>, x0: usize, y0: usize) -> f32 {
+    let half = CELL / 2;
+    let (left, right) = (x0.saturating_sub(half), (x0 + CELL + half).min(light.width()));
+    let (top, bottom) = (y0.saturating_sub(half), (y0 + CELL + half).min(light.height()));
+    let mut values: Vec<f32> =
+        (top..bottom).step_by(2).flat_map(|y| light.row(y)[left..right].iter().step_by(2).copied()).collect();
+    let k = (values.len() - 1) * 4 / 5;
+    *values.select_nth_unstable_by(k, f32::total_cmp).1
+}
+
+/// Ink as the share of light that the paper's level has lost, 0 to 1.
+pub(super) fn divide(light: &Raster<f32>, paper: &Paper) -> Raster<f32> {
+    let grid = &paper.0;
+    let spread = |v: &[f32]| v.iter().fold((f32::MAX, f32::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    let (low, high) = spread(grid.data());
+    if high - low < 2.0 / 255.0 {
+        return light.map(|g| (1.0 - g / high.max(1e-3)).clamp(0.0, 1.0));
+    }
+    let last = ((grid.width() - 1) as f32, (grid.height() - 1) as f32);
+    let cell = |pixel: usize, last: f32| ((pixel as f32 + 0.5) / CELL as f32 - 0.5).clamp(0.0, last);
+    Raster::from_fn(light.width(), light.height(), |x, y| {
+        let (fx, fy) = (cell(x, last.0), cell(y, last.1));
+        let level = grid.sample(kurbo::Point::new(f64::from(fx) + 0.5, f64::from(fy) + 0.5));
+        (1.0 - light[(x, y)] / level.max(1e-3)).clamp(0.0, 1.0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uneven_light_divides_away() {
+        let shade = |x: usize, y: usize| 0.9 - 0.3 * (x as f32 / 200.0) - 0.1 * (y as f32 / 150.0);
+        let line = |y: usize| (70..73).contains(&y);
+        let light = Raster::from_fn(200, 150, |x, y| if line(y) { 0.3 * shade(x, y) } else { shade(x, y) });
+        let ink = divide(&light, &paper_level(&light));
+        for y in 5..145 {
+            for x in 5..195 {
+                let expected = if line(y) { 0.7 } else { 0.0 };
+                assert!((ink[(x, y)] - expected).abs() < 0.04, "({x}, {y}): {}", ink[(x, y)]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_large_solid_is_not_paper() {
+        let light =
+            Raster::from_fn(300, 300, |x, y| if (90..210).contains(&x) && (90..210).contains(&y) { 0.1 } else { 1.0 });
+        let ink = divide(&light, &paper_level(&light));
+        assert!(ink[(150, 150)] > 0.8);
+        assert!(ink[(20, 20)] < 0.01);
+    }
+}

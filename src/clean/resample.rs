@@ -1,0 +1,34 @@
+//! Very thick and very thin drawings are brought to a width that the later stages know.
+
+use super::width::ridge_widths;
+use crate::raster::{Mask, Raster};
+use image::imageops::{FilterType, resize as resize_image};
+
+/// Lines wider than this many pixels carry no more detail for it: they are traced at half this width.
+const THICK: f64 = 14.0;
+/// Lines thinner than this many pixels are enlarged, so that edges and directions can be told apart.
+const THIN: f64 = 1.75;
+/// The largest raster that is enlarged, in pixels.
+const ENLARGE_LIMIT: usize = 30_000_000;
+
+/// The factor by which to resample a drawing; 1 for most.
+pub(super) fn scale_for(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line_width: f64) -> f64 {
+    let (width, height) = mask.size();
+    if line_width < THIN && 4 * width * height <= ENLARGE_LIMIT {
+        return 2.0;
+    }
+    let widths = ridge_widths(ink, mask, depth);
+    let Some(&thin) = widths.get(widths.len() / 10) else { return 1.0 };
+    // A fine line among thick ones keeps at least four pixels.
+    let scale = (0.5 * THICK / line_width).max(4.0 / thin).min(1.0);
+    let shrinks = line_width > THICK && scale < 0.8 && width.min(height) as f64 * scale >= 16.0;
+    if shrinks { scale } else { 1.0 }
+}
+
+/// Resamples ink by a factor, averaging areas when shrinking.
+pub(super) fn resize(ink: Raster<f32>, scale: f64) -> Raster<f32> {
+    let size = |n: usize| ((n as f64 * scale).round() as u32).max(1);
+    let (width, height) = (size(ink.width()), size(ink.height()));
+    let filter = if scale > 1.0 { FilterType::CatmullRom } else { FilterType::Triangle };
+    Raster::from_image(resize_image(&ink.into_image(), width, height, filter)).map(|i| i.clamp(0.0, 1.0))
+}

@@ -1,0 +1,103 @@
+//! Ink from paper.
+
+use super::blur;
+use crate::options::Threshold;
+use crate::raster::{Mask, Raster};
+use imageproc::contrast::otsu_level;
+use imageproc::morphology::Mask as Structure;
+use imageproc::morphology::grayscale_dilate;
+
+/// Spread of the paper's grain, as a share of full ink: from the median absolute difference of neighbours,
+/// which lines, being few, do not move.
+pub(super) fn grain(ink: &Raster<f32>) -> f64 {
+    let mut steps = Vec::new();
+    for y in (0..ink.height()).step_by(3) {
+        let row = ink.row(y);
+        steps.extend(row.windows(2).step_by(2).map(|w| (w[1] - w[0]).abs()));
+    }
+    if steps.is_empty() {
+        return 0.0;
+    }
+    let middle = steps.len() / 2;
+    let median = *steps.select_nth_unstable_by(middle, f32::total_cmp).1;
+    // Half of the grain is cut off at the paper's level, which the clamp in the division turns into zeros;
+    // 1.4826 / sqrt(2) is the normal law's factor for differences of neighbours.
+    f64::from(median) * 1.05
+}
+
+/// The coverage from which a normalised pixel counts as ink. A clean render's thin lines spread over two
+/// pixels, so its level lies lower.
+pub(super) fn level(noise: f64) -> f32 {
+    if noise > 0.0 { 0.5 } else { 0.4 }
+}
+
+/// Scales the ink so that a line's core is 1 and tells ink from paper.
+///
+/// One level serves the whole page when its lines are about equally dark; otherwise each place is measured
+/// against the darkest ink near it, so that light pencil lines hold beside dark ones.
+pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold) -> (Raster<f32>, Mask) {
+    if let Threshold::Fixed(t) = threshold {
+        let mask = ink.map(|i| f64::from(i) > t);
+        return (scaled(ink, (2.0 * t) as f32), mask);
+    }
+    let floor = (6.0 * noise).max(0.06) as f32;
+    let Some((otsu, core)) = global_levels(&ink, floor) else {
+        let mask = ink.map(|_| false);
+        return (ink, mask);
+    };
+    if noise == 0.0 && core > 0.8 {
+        let mask = ink.map(|i| i > level(noise));
+        return (ink, mask);
+    }
+    let nearby = nearby_core(&ink, (0.8 * otsu).max(floor));
+    let ink = if is_even(&ink, &nearby, otsu, core) {
+        scaled(ink, core)
+    } else {
+        Raster::from_fn(ink.width(), ink.height(), |x, y| (ink[(x, y)] / nearby[(x, y)]).min(1.0))
+    };
+    let mask = ink.map(|i| i > level(noise));
+    (ink, mask)
+}
+
+fn scaled(ink: Raster<f32>, core: f32) -> Raster<f32> {
+    ink.map(|i| (i / core).min(1.0))
+}
+
+/// Otsu's level and the ink of a line's core (an upper quantile above that level); `None` without ink.
+fn global_levels(ink: &Raster<f32>, floor: f32) -> Option<(f32, f32)> {
+    let bytes = image::GrayImage::from_fn(ink.width() as u32, ink.height() as u32, |x, y| {
+        image::Luma([(ink[(x as usize, y as usize)] * 255.0).round() as u8])
+    });
+    let otsu = (f32::from(otsu_level(&bytes)) / 255.0).max(floor);
+    let mut above: Vec<f32> = ink.data().iter().copied().filter(|&i| i > otsu).collect();
+    if above.is_empty() {
+        return None;
+    }
+    let k = (above.len() - 1) * 3 / 4;
+    let core = *above.select_nth_unstable_by(k, f32::total_cmp).1;
+    Some((otsu, core))
+}
+
+/// The darkest ink within a few pixels of each place, smoothed, and no less than `floor`.
+fn nearby_core(ink: &Raster<f32>, floor: f32) -> Raster<f32> {
+    let bytes = image::GrayImage::from_fn(ink.width() as u32, ink.height() as u32, |x, y| {
+        image::Luma([(ink[(x as usize, y as usize)] * 255.0).round() as u8])
+    });
+    let dilated = grayscale_dilate(&bytes, &Structure::square(6));
+    let core = Raster::from_fn(ink.width(), ink.height(), |x, y| {
+        (f32::from(dilated.get_pixel(x as u32, y as u32)[0]) / 255.0).max(floor)
+    });
+    blur(core, 3.0)
+}
+
+/// Whether the lines of the page are about equally dark: the lower decile of the cores near ink is over half
+/// of the common core.
+fn is_even(ink: &Raster<f32>, nearby: &Raster<f32>, otsu: f32, core: f32) -> bool {
+    let mut cores: Vec<f32> =
+        ink.data().iter().zip(nearby.data()).filter(|(i, _)| **i > 0.7 * otsu).map(|(_, c)| *c).collect();
+    if cores.is_empty() {
+        return true;
+    }
+    let k = cores.len() / 10;
+    *cores.select_nth_unstable_by(k, f32::total_cmp).1 > 0.55 * core
+}

@@ -1,0 +1,274 @@
+//! The graph from resolved lines.
+
+use super::contacts::{LineIndex, Place, piece_count};
+use super::ends::{End, end_id};
+use super::nodes::Node;
+use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
+use crate::clean::LineImage;
+use crate::options::Options;
+use crate::streamline::{STEP, Stop, Streamline};
+use kurbo::{Line, Point};
+use petgraph::stable_graph::{EdgeIndex, NodeIndex};
+
+/// Points nearer to a node than this, in line widths, are inside the junction and do not speak for the line.
+const INSIDE: f64 = 0.75;
+
+/// A cut of a line at a node.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    at: f64,
+    node: NodeIndex,
+}
+
+/// Builds nodes, edges and trails.
+pub(super) fn assemble(
+    image: &LineImage,
+    lines: &[Streamline],
+    ends: &[Option<End>],
+    nodes: &[Node],
+    options: &Options,
+) -> StrokeGraph {
+    let mut assembly = Assembly::new(image, lines, ends, nodes);
+    assembly.add_tees();
+    assembly.add_crossings();
+    let edges: Vec<Vec<EdgeIndex>> = (0..lines.len()).map(|i| assembly.add_edges(i)).collect();
+    assembly.add_trails(&edges);
+    assembly.drop_short(options.min_length * image.line_width);
+    assembly.out
+}
+
+struct Assembly<'a> {
+    image: &'a LineImage,
+    nodes: &'a [Node],
+    node_of_end: Vec<Option<usize>>,
+    /// Lines between their nodes, and how far their indices moved.
+    lines: Vec<Streamline>,
+    shift: Vec<f64>,
+    cuts: Vec<Vec<Cut>>,
+    indices: Vec<NodeIndex>,
+    out: StrokeGraph,
+}
+
+impl<'a> Assembly<'a> {
+    fn new(image: &'a LineImage, lines: &[Streamline], ends: &[Option<End>], nodes: &'a [Node]) -> Self {
+        let mut node_of_end = vec![None; ends.len()];
+        for (k, node) in nodes.iter().enumerate() {
+            node.ends.iter().for_each(|&e| node_of_end[e] = Some(k));
+        }
+        let mut out = StrokeGraph::default();
+        let kind = |n: &Node| match (n.ends.len(), n.bodies.is_empty()) {
+            (_, false) => JunctionKind::Tee,
+            (1, true) => JunctionKind::FreeEnd,
+            (2, true) => JunctionKind::Corner,
+            _ => JunctionKind::Branch,
+        };
+        let indices =
+            nodes.iter().map(|n| out.graph.add_node(Junction { position: n.position, kind: kind(n) })).collect();
+        let trimmed = (0..lines.len()).map(|i| trim(image, &lines[i], i, ends, nodes, &node_of_end));
+        let (lines, shift): (Vec<_>, Vec<_>) = trimmed.unzip();
+        let cuts = vec![Vec::new(); lines.len()];
+        Self { image, nodes, node_of_end, lines, shift, cuts, indices, out }
+    }
+
+    /// Bodies are cut where lines end at them.
+    fn add_tees(&mut self) {
+        for (node, &index) in self.nodes.iter().zip(&self.indices) {
+            for body in &node.bodies {
+                let last = piece_count(&self.lines[body.line]) as f64;
+                let at = body.at - self.shift[body.line];
+                if self.lines[body.line].closed || (at > 0.0 && at < last) {
+                    self.cuts[body.line].push(Cut { at, node: index });
+                }
+            }
+        }
+    }
+
+    /// Lines are cut where they cross, unless a node is there already.
+    fn add_crossings(&mut self) {
+        let lines = std::mem::take(&mut self.lines);
+        let index = LineIndex::new(&lines);
+        let mut found: Vec<(Place, Place, Point)> = Vec::new();
+        for (i, line) in lines.iter().enumerate() {
+            for k in 0..piece_count(line) {
+                let piece = Line::new(line.points[k], line.points[(k + 1) % line.points.len()]);
+                for (place, point, t) in index.crossings(piece) {
+                    let here = Place { line: i, at: k as f64 + t };
+                    if self.is_crossing(&lines, here, place) && !self.is_known(&found, here, place, point) {
+                        found.push((here, place, point));
+                    }
+                }
+            }
+        }
+        for (a, b, position) in found {
+            let node = self.out.graph.add_node(Junction { position, kind: JunctionKind::Crossing });
+            self.cuts[a.line].push(Cut { at: a.at, node });
+            self.cuts[b.line].push(Cut { at: b.at, node });
+        }
+        self.lines = lines;
+    }
+
+    /// Each pair once; on one line only between parts that are far apart along it.
+    fn is_crossing(&self, lines: &[Streamline], a: Place, b: Place) -> bool {
+        if a.line != b.line {
+            return a.line < b.line;
+        }
+        let apart = (b.at - a.at).abs();
+        let apart = if lines[a.line].closed { apart.min(lines[a.line].points.len() as f64 - apart) } else { apart };
+        a.at < b.at && apart * STEP > 4.0 * self.image.line_width
+    }
+
+    /// Whether the pair already crosses just before, or both lines share a node here.
+    fn is_known(&self, found: &[(Place, Place, Point)], a: Place, b: Place, point: Point) -> bool {
+        let width = self.image.line_width;
+        let again = found.iter().rev().any(|(c, d, _)| {
+            c.line == a.line && d.line == b.line && (c.at - a.at).abs() * STEP < 6.0 * width && (d.at - b.at).abs() * STEP < 6.0 * width
+        });
+        again
+            || self.nodes.iter().any(|n| {
+                let has = |line: usize| {
+                    n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line)
+                };
+                (n.position - point).hypot() < 1.2 * width && has(a.line) && has(b.line)
+            })
+    }
+
+    /// The edges of one line, in order.
+    fn add_edges(&mut self, i: usize) -> Vec<EdgeIndex> {
+        let line = self.lines[i].clone();
+        let mut cuts = std::mem::take(&mut self.cuts[i]);
+        let last = piece_count(&line) as f64;
+        if line.closed {
+            if cuts.is_empty() {
+                let seam = Junction { position: line.points[0], kind: JunctionKind::Seam };
+                cuts.push(Cut { at: 0.0, node: self.out.graph.add_node(seam) });
+            }
+            cuts.sort_by(|a, b| a.at.total_cmp(&b.at));
+            let first = cuts[0];
+            cuts.push(Cut { at: first.at + last, node: first.node });
+        } else {
+            for (side, at) in [(0, 0.0), (1, last)] {
+                let node = self.node_of_end[end_id(i, side)].expect("every open line has two nodes");
+                cuts.push(Cut { at, node: self.indices[node] });
+            }
+            cuts.sort_by(|a, b| a.at.total_cmp(&b.at));
+        }
+        let pieces = cuts.windows(2);
+        pieces.map(|pair| self.out.graph.add_edge(pair[0].node, pair[1].node, self.edge(&line, pair[0], pair[1]))).collect()
+    }
+
+    fn edge(&self, line: &Streamline, from: Cut, to: Cut) -> Edge {
+        let n = line.points.len();
+        let position = |cut: Cut| self.out.graph[cut.node].position;
+        let (mut points, mut widths) = (vec![position(from)], vec![f64::NAN]);
+        let (first, end) = (from.at.floor() as usize + 1, to.at.ceil() as usize);
+        for k in first..end {
+            points.push(line.points[k % n]);
+            widths.push(line.widths[k % n]);
+        }
+        points.push(position(to));
+        widths.push(f64::NAN);
+        Edge { points, widths }
+    }
+
+    /// Lines are chained through paired ends; every line is in one trail.
+    fn add_trails(&mut self, edges: &[Vec<EdgeIndex>]) {
+        let mut partner = vec![None; 2 * edges.len()];
+        for (a, b) in self.nodes.iter().flat_map(|n| &n.pairs) {
+            (partner[*a], partner[*b]) = (Some(*b), Some(*a));
+        }
+        let mut used = vec![false; edges.len()];
+        // Open chains start at an end without a partner; what is left over is closed.
+        let starts = (0..partner.len()).filter(|&e| partner[e].is_none()).chain(0..partner.len());
+        for start in starts {
+            if used[start / 2] {
+                continue;
+            }
+            let mut trail = Trail { edges: Vec::new(), closed: self.lines[start / 2].closed };
+            let mut entry = start;
+            loop {
+                let (line, side) = (entry / 2, entry % 2);
+                used[line] = true;
+                if side == 0 {
+                    trail.edges.extend(edges[line].iter().map(|&e| (e, false)));
+                } else {
+                    trail.edges.extend(edges[line].iter().rev().map(|&e| (e, true)));
+                }
+                match partner[end_id(line, 1 - side)] {
+                    Some(next) if next == start => {
+                        trail.closed = true;
+                        break;
+                    }
+                    Some(next) if !used[next / 2] => entry = next,
+                    _ => break,
+                }
+            }
+            self.out.trails.push(trail);
+        }
+    }
+
+    /// Drops strokes shorter than `least` that have a free end.
+    fn drop_short(&mut self, least: f64) {
+        let graph = &mut self.out.graph;
+        let mut trails = std::mem::take(&mut self.out.trails);
+        trails.retain(|trail| {
+            let length: f64 = trail.edges.iter().map(|(e, _)| length(&graph[*e].points)).sum();
+            let free = trail.edges.iter().filter_map(|(e, _)| graph.edge_endpoints(*e)).any(|(a, b)| {
+                [a, b].iter().any(|&n| graph[n].kind == JunctionKind::FreeEnd)
+            });
+            let keep = length >= least || !free;
+            if !keep {
+                trail.edges.iter().for_each(|(e, _)| drop(graph.remove_edge(*e)));
+            }
+            keep
+        });
+        graph.retain_nodes(|graph, n| graph.neighbors_undirected(n).next().is_some());
+        self.out.trails = trails;
+    }
+}
+
+fn length(points: &[Point]) -> f64 {
+    points.windows(2).map(|w| (w[1] - w[0]).hypot()).sum()
+}
+
+/// A line between its nodes: what lies beyond a node or inside its junction is cut off and the node is put in
+/// its place. Also returns how much indices moved.
+fn trim(
+    image: &LineImage,
+    line: &Streamline,
+    i: usize,
+    ends: &[Option<End>],
+    nodes: &[Node],
+    node_of_end: &[Option<usize>],
+) -> (Streamline, f64) {
+    let (Some(a), Some(b)) = (ends[end_id(i, 0)], ends[end_id(i, 1)]) else {
+        return (line.clone(), 0.0);
+    };
+    let node = |side: usize| &nodes[node_of_end[end_id(i, side)].expect("every end has a node")];
+    let (first, last) = (node(0), node(1));
+    let n = line.points.len();
+    let inside = |node: &Node, end: &End, k: usize| {
+        let d = line.points[k] - node.position;
+        if node.ends.len() == 1 && node.bodies.is_empty() {
+            let near = d.hypot() < 3.0 * image.line_width;
+            return near && d.dot(end.tail.heading) > -0.3 && end.stop != Stop::Border;
+        }
+        d.hypot() < INSIDE * image.line_width || d.dot(end.tail.heading) > 0.0 && d.hypot() < 3.0 * image.line_width
+    };
+    let mut from = a.tip.min(n - 1);
+    while from < n - 1 && inside(first, &a, from) {
+        from += 1;
+    }
+    let mut to = b.tip.min(n - 1);
+    while to > from && inside(last, &b, to) {
+        to -= 1;
+    }
+    let (mut points, mut widths) = (vec![first.position], vec![f64::NAN]);
+    if to > from {
+        points.extend(&line.points[from..=to]);
+        widths.extend(&line.widths[from..=to]);
+    }
+    points.push(last.position);
+    widths.push(f64::NAN);
+    let stops = line.stops;
+    (Streamline { points, widths, closed: false, stops }, from as f64 - 1.0)
+}

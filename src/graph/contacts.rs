@@ -1,0 +1,286 @@
+//! Where the ends of lines meet other lines.
+
+use super::ends::{End, end_id};
+use crate::clean::LineImage;
+use crate::streamline::{STEP, Stop, Streamline};
+use kurbo::{Line, Point, Vec2};
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
+
+/// An end sticks out of a line rather than ending at it when it goes further than the line's edge by this
+/// share of a line width.
+const PROTRUSION: f64 = 0.42;
+/// Parts of one line are taken for different lines when they are this many line widths apart along it.
+const OWN: f64 = 4.0;
+
+/// A line's place: index of the line and a fractional index of its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub line: usize,
+    pub at: f64,
+}
+
+/// What an end meets.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Touch {
+    /// Another end (its number).
+    End(usize),
+    /// The body of a line.
+    Body(Place),
+}
+
+/// An end that stops at a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    /// Number of the end.
+    pub end: usize,
+    pub touch: Touch,
+    pub point: Point,
+    /// How far the place lies from what the end's own edge tells, in pixels; the smaller the more plausible.
+    pub misfit: f64,
+}
+
+type Piece = GeomWithData<rstar::primitives::Line<[f64; 2]>, (usize, usize)>;
+
+/// All pieces of all lines, findable by place.
+pub(super) struct LineIndex<'a> {
+    lines: &'a [Streamline],
+    tree: RTree<Piece>,
+}
+
+impl<'a> LineIndex<'a> {
+    pub fn new(lines: &'a [Streamline]) -> Self {
+        let mut pieces = Vec::new();
+        for (i, line) in lines.iter().enumerate() {
+            for k in 0..piece_count(line) {
+                let piece = piece(line, k);
+                let ends = rstar::primitives::Line::new([piece.p0.x, piece.p0.y], [piece.p1.x, piece.p1.y]);
+                pieces.push(GeomWithData::new(ends, (i, k)));
+            }
+        }
+        Self { lines, tree: RTree::bulk_load(pieces) }
+    }
+
+    /// Crossings of a short segment with all lines: place, point, fraction along the segment. In a stable order.
+    pub fn crossings(&self, segment: Line) -> Vec<(Place, Point, f64)> {
+        let envelope = AABB::from_corners([segment.p0.x, segment.p0.y], [segment.p1.x, segment.p1.y]);
+        let mut found: Vec<_> = self
+            .tree
+            .locate_in_envelope_intersecting(&envelope)
+            .filter_map(|p| {
+                let (line, k) = p.data;
+                let (t, s) = intersect(segment, piece(&self.lines[line], k))?;
+                Some((Place { line, at: k as f64 + s }, segment.p0.lerp(segment.p1, t), t))
+            })
+            .collect();
+        found.sort_by(|a, b| (a.0.line, a.0.at).partial_cmp(&(b.0.line, b.0.at)).expect("finite"));
+        found
+    }
+
+    /// Places of lines within `radius` of a point: the nearest one per line and pass, with its distance.
+    pub fn near(&self, p: Point, radius: f64) -> Vec<(Place, Point, f64)> {
+        let mut found: Vec<_> = self
+            .tree
+            .locate_within_distance([p.x, p.y], radius * radius)
+            .map(|candidate| {
+                let (line, k) = candidate.data;
+                let piece = piece(&self.lines[line], k);
+                let along = piece.p1 - piece.p0;
+                let t = ((p - piece.p0).dot(along) / along.hypot2().max(1e-12)).clamp(0.0, 1.0);
+                let foot = piece.p0 + along * t;
+                (Place { line, at: k as f64 + t }, foot, (foot - p).hypot())
+            })
+            .collect();
+        found.sort_by(|a, b| (a.2, a.0.line, a.0.at).partial_cmp(&(b.2, b.0.line, b.0.at)).expect("finite"));
+        found
+    }
+}
+
+/// Number of straight pieces of a line; a closed line has one more that leads back.
+pub(super) fn piece_count(line: &Streamline) -> usize {
+    if line.closed { line.points.len() } else { line.points.len().saturating_sub(1) }
+}
+
+fn piece(line: &Streamline, k: usize) -> Line {
+    Line::new(line.points[k], line.points[(k + 1) % line.points.len()])
+}
+
+/// Parameters at which two segments cross.
+fn intersect(a: Line, b: Line) -> Option<(f64, f64)> {
+    let (da, db) = (a.p1 - a.p0, b.p1 - b.p0);
+    let det = da.cross(db);
+    if det.abs() < 1e-12 {
+        return None;
+    }
+    let d = b.p0 - a.p0;
+    let (t, s) = (d.cross(db) / det, d.cross(da) / det);
+    ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s)).then_some((t, s))
+}
+
+/// Direction of a line at a place.
+pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
+    let line = &lines[place.line];
+    let n = line.points.len();
+    let k = (place.at as usize).min(piece_count(line).saturating_sub(1));
+    let (a, b) = if line.closed {
+        (line.points[(k + n - 2) % n], line.points[(k + 3) % n])
+    } else {
+        (line.points[k.saturating_sub(2)], line.points[(k + 3).min(n - 1)])
+    };
+    let d = b - a;
+    if d.hypot() > 1e-9 { d.normalize() } else { Vec2::new(1.0, 0.0) }
+}
+
+/// What each end stops at; an end without a contact is free.
+pub(super) fn contacts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]) -> Vec<Contact> {
+    let index = LineIndex::new(lines);
+    let finder = Finder { image, lines, ends, index };
+    ends.iter().flatten().flat_map(|end| finder.of_end(end)).collect()
+}
+
+struct Finder<'a> {
+    image: &'a LineImage,
+    lines: &'a [Streamline],
+    ends: &'a [Option<End>],
+    index: LineIndex<'a>,
+}
+
+impl Finder<'_> {
+    fn of_end(&self, end: &End) -> Vec<Contact> {
+        if end.stop == Stop::Border {
+            return Vec::new();
+        }
+        let mut contacts = self.crossed(end);
+        if contacts.is_empty() {
+            contacts.extend(self.beside(end));
+        }
+        contacts
+    }
+
+    /// Lines that the end's last stretch, or its straight continuation through ink, crosses.
+    fn crossed(&self, end: &End) -> Vec<Contact> {
+        let mut contacts = Vec::new();
+        let stretch = self.stretch(end);
+        let total: f64 = stretch.windows(2).map(|w| (w[1] - w[0]).hypot()).sum::<f64>() - self.extension(end);
+        let mut walked = 0.0;
+        for pair in stretch.windows(2) {
+            let piece = Line::new(pair[0], pair[1]);
+            let length = (pair[1] - pair[0]).hypot();
+            for (place, point, t) in self.index.crossings(piece) {
+                if self.is_own_neighbourhood(end, place) {
+                    continue;
+                }
+                let beyond = total - (walked + t * length);
+                contacts.extend(self.judge(end, place, point, pair[1] - pair[0], beyond));
+            }
+            walked += length;
+        }
+        contacts
+    }
+
+    /// The last part of the line towards this end, outwards, and a little of its continuation.
+    fn stretch(&self, end: &End) -> Vec<Point> {
+        let line = &self.lines[end.line];
+        let n = line.points.len();
+        let index = |k: usize| if end.side == 0 { k } else { n - 1 - k };
+        let tip = if end.side == 0 { end.tip } else { n - 1 - end.tip };
+        let count = (tip + (1.0 * end.width / STEP) as usize + 1).min(n - 1);
+        let mut stretch: Vec<Point> = (0..=count).rev().map(|k| line.points[index(k)]).collect();
+        let extension = self.extension(end);
+        if extension > 0.0
+            && let [.., before, last] = stretch[..]
+        {
+            let d = last - before;
+            stretch.push(last + d * (extension / d.hypot().max(1e-9)));
+        }
+        stretch
+    }
+
+    /// How far the end may be drawn out: as long as there is ink, at most a good half of a line width.
+    fn extension(&self, end: &End) -> f64 {
+        let most = 0.6 * self.image.line_width + 0.5;
+        let n = self.lines[end.line].points.len();
+        if n < 2 {
+            return 0.0;
+        }
+        let (last, before) = if end.side == 0 { (0, 1) } else { (n - 1, n - 2) };
+        let points = &self.lines[end.line].points;
+        let heading = (points[last] - points[before]).normalize();
+        let mut length = 0.0;
+        while length < most && self.image.ink.sample(end.point + heading * (length + 0.25)) > 0.3 {
+            length += 0.25;
+        }
+        length
+    }
+
+    fn is_own_neighbourhood(&self, end: &End, place: Place) -> bool {
+        if place.line != end.line {
+            return false;
+        }
+        let n = self.lines[end.line].points.len() as f64;
+        let from_end = if end.side == 0 { place.at } else { n - 1.0 - place.at };
+        from_end * STEP < OWN * end.width
+    }
+
+    /// Whether an end stops at the line that it crosses `beyond` pixels before its last point.
+    fn judge(&self, end: &End, place: Place, point: Point, heading: Vec2, beyond: f64) -> Option<Contact> {
+        let along = direction(self.lines, place);
+        let sine = (heading.normalize().cross(along)).abs().max(0.5);
+        let other_width = self.width_at(place);
+        let edge = 0.5 * other_width / sine;
+        let slack = PROTRUSION * self.image.line_width.max(2.0);
+        if beyond > edge + slack && end.stop != Stop::Merged {
+            return None;
+        }
+        let touch = match self.end_near(place, 0.5 * end.width / sine + slack) {
+            Some(other) if other != end_id(end.line, end.side) => Touch::End(other),
+            _ => Touch::Body(place),
+        };
+        Some(Contact { end: end_id(end.line, end.side), touch, point, misfit: (beyond - edge).abs() })
+    }
+
+    /// The end of a line within `reach` pixels along it from a place.
+    fn end_near(&self, place: Place, reach: f64) -> Option<usize> {
+        let line = &self.lines[place.line];
+        if line.closed {
+            return None;
+        }
+        let to_last = (line.points.len() - 1) as f64 - place.at;
+        let (side, distance) = if place.at <= to_last { (0, place.at) } else { (1, to_last) };
+        let other = end_id(place.line, side);
+        let merged = self.ends[other].is_some_and(|e| e.stop == Stop::Merged);
+        let reach = if merged { reach + self.image.line_width } else { reach };
+        (distance * STEP <= reach).then_some(other)
+    }
+
+    fn width_at(&self, place: Place) -> f64 {
+        let widths = &self.lines[place.line].widths;
+        let k = (place.at as usize).min(widths.len() - 1);
+        let around = &widths[k.saturating_sub(20)..(k + 20).min(widths.len())];
+        let finite: Vec<f64> = around.iter().copied().filter(|w| w.is_finite()).collect();
+        if finite.is_empty() { self.image.line_width } else { finite.iter().sum::<f64>() / finite.len() as f64 }
+    }
+
+    /// A line beside the end that its last stretch does not cross, joined to it by ink.
+    fn beside(&self, end: &End) -> Option<Contact> {
+        let reach = if end.stop == Stop::Merged { 0.75 } else { 0.9 } * self.image.line_width.max(1.5);
+        let from = if end.stop == Stop::Merged { self.lines[end.line].points[end.tip] } else { end.point };
+        for (place, foot, distance) in self.index.near(from, reach) {
+            if self.is_own_neighbourhood(end, place) || !self.is_inked(from, foot) {
+                continue;
+            }
+            let touch = match self.end_near(place, 0.8 * self.image.line_width) {
+                Some(other) if other != end_id(end.line, end.side) => Touch::End(other),
+                _ => Touch::Body(place),
+            };
+            return Some(Contact { end: end_id(end.line, end.side), touch, point: foot, misfit: distance });
+        }
+        None
+    }
+
+    /// Whether there is ink all the way between two points.
+    fn is_inked(&self, a: Point, b: Point) -> bool {
+        let count = ((b - a).hypot() / 0.5).ceil() as usize;
+        (0..=count).all(|k| self.image.ink.sample(a.lerp(b, k as f64 / count.max(1) as f64)) > 0.3)
+    }
+}

@@ -1,0 +1,144 @@
+//! The ends of streamlines, before they are resolved.
+
+use crate::clean::LineImage;
+use crate::streamline::{STEP, Stop, Streamline, Tail};
+use kurbo::{Point, Vec2};
+
+/// How much of a line tells where its end is heading, in line widths.
+const TAIL: f64 = 5.0;
+/// How much of a line right before a junction is left out of that, in line widths.
+const BLUR: f64 = 0.4;
+
+/// One end of a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    /// Index of the line.
+    pub line: usize,
+    /// 0 for the first point, 1 for the last.
+    pub side: usize,
+    /// Where the walk stopped.
+    pub point: Point,
+    /// Index of the last point at which the line was alone.
+    pub tip: usize,
+    /// The line's course up to the tip, heading outwards.
+    pub tail: Tail,
+    /// Line width near the end.
+    pub width: f64,
+    /// Why the walk stopped.
+    pub stop: Stop,
+}
+
+/// Number of an end: two per line.
+pub(super) fn end_id(line: usize, side: usize) -> usize {
+    2 * line + side
+}
+
+/// The ends of all lines, `2 * line + side`; `None` for closed lines.
+pub(super) fn ends(image: &LineImage, lines: &[Streamline]) -> Vec<Option<End>> {
+    let both = |line: usize| [0, 1].map(|side| end(image, lines, line, side));
+    (0..lines.len()).flat_map(both).collect()
+}
+
+fn end(image: &LineImage, lines: &[Streamline], line: usize, side: usize) -> Option<End> {
+    let streamline = &lines[line];
+    if streamline.closed {
+        return None;
+    }
+    let n = streamline.points.len();
+    // Indices counted from this end.
+    let index = |k: usize| if side == 0 { k } else { n - 1 - k };
+    let width = median_width(streamline, index, image.line_width);
+    let tip = (0..n).find(|&k| streamline.widths[index(k)].is_finite()).unwrap_or(n / 2);
+    let overrun = tip as f64 * STEP;
+    let skip = if overrun > 0.3 * width { (BLUR * width / STEP) as usize } else { 0 };
+    let length = ((TAIL * width / STEP) as usize).max(3);
+    let from = (tip + skip).min(n.saturating_sub(3));
+    let run: Vec<Point> = (from..(from + length).min(n))
+        .take_while(|&k| k < from + 3 || streamline.widths[index(k)].is_finite())
+        .map(|k| streamline.points[index(k)])
+        .collect();
+    let oldest_first: Vec<Point> = run.into_iter().rev().collect();
+    let outwards = streamline.points[index(0)] - streamline.points[index((n - 1).min(2))];
+    let heading = if outwards.hypot() > 1e-9 { outwards.normalize() } else { Vec2::new(1.0, 0.0) };
+    let fallback = Tail { point: streamline.points[index(0)], heading, curvature: 0.0 };
+    let tail = Tail::fit(&oldest_first, 0.1).unwrap_or(fallback);
+    let point = streamline.points[index(0)];
+    Some(End { line, side, point, tip: index(tip), tail, width, stop: streamline.stops[side] })
+}
+
+fn median_width(line: &Streamline, index: impl Fn(usize) -> usize, typical: f64) -> f64 {
+    let near = (0..line.points.len()).map(|k| line.widths[index(k)]).filter(|w| w.is_finite()).take(40);
+    let mut widths: Vec<f64> = near.collect();
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 2).copied().unwrap_or(typical)
+}
+
+/// Takes out lines that are dots: about as long, caps included, as they are wide, and touching nothing else.
+pub(super) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<(Point, f64)>, Vec<Streamline>) {
+    let mut dots = Vec::new();
+    let mut lines = Vec::new();
+    for streamline in streamlines {
+        match dot(image, streamline) {
+            Some(dot) => dots.push(dot),
+            None => lines.push(streamline.clone()),
+        }
+    }
+    (dots, lines)
+}
+
+/// The centre and diameter of a streamline's ink, if it is a dot.
+fn dot(image: &LineImage, line: &Streamline) -> Option<(Point, f64)> {
+    let length = line.points.len() as f64 * STEP;
+    if length > 2.6 * image.line_width || line.points.is_empty() {
+        return None;
+    }
+    let middle = line.points[line.points.len() / 2];
+    let blob = Blob::around(image, middle, 3.0 * image.line_width + 4.0)?;
+    let round = blob.long < 1.35 * blob.short + 0.5;
+    (round && blob.short < 2.5 * image.line_width).then_some((blob.centre, blob.short.max(1.0)))
+}
+
+/// An isolated region of ink.
+struct Blob {
+    centre: Point,
+    /// Extent along its long and its short axis, in pixels.
+    long: f64,
+    short: f64,
+}
+
+impl Blob {
+    /// The connected ink around a point; `None` when it reaches further than `limit`.
+    fn around(image: &LineImage, start: Point, limit: f64) -> Option<Self> {
+        let first = (start.x.floor() as i64, start.y.floor() as i64);
+        let (mut stack, mut seen) = (vec![first], vec![first]);
+        let (mut mass, mut sum, mut xx, mut xy, mut yy) = (0.0, Vec2::ZERO, 0.0, 0.0, 0.0);
+        while let Some((x, y)) = stack.pop() {
+            let p = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
+            let d = p - start.to_vec2();
+            if d.hypot() > limit {
+                return None;
+            }
+            let ink = f64::from(image.ink.get(x, y).unwrap_or(0.0));
+            mass += ink;
+            sum += p * ink;
+            (xx, xy, yy) = (xx + d.x * d.x * ink, xy + d.x * d.y * ink, yy + d.y * d.y * ink);
+            for (nx, ny) in [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)] {
+                if image.ink.get(nx, ny).is_some_and(|i| i > 0.15) && !seen.contains(&(nx, ny)) {
+                    seen.push((nx, ny));
+                    stack.push((nx, ny));
+                }
+            }
+        }
+        if mass <= 0.0 {
+            return None;
+        }
+        let centre = sum / mass;
+        let d = centre - start.to_vec2();
+        let (a, b, c) = (xx / mass - d.x * d.x, xy / mass - d.x * d.y, yy / mass - d.y * d.y);
+        let spread = (0.25 * (a - c) * (a - c) + b * b).sqrt();
+        // A disc of diameter D has a variance of D^2 / 16 along any axis.
+        let extent = |variance: f64| 4.0 * variance.max(0.0).sqrt();
+        let (long, short) = (extent(0.5 * (a + c) + spread), extent(0.5 * (a + c) - spread));
+        Some(Self { centre: centre.to_point(), long, short })
+    }
+}

@@ -1,0 +1,238 @@
+//! Ends that belong together become one node; its place is solved from its arms.
+
+use super::contacts::{Contact, Place, Touch, direction};
+use super::ends::{End, end_id};
+use crate::clean::LineImage;
+use crate::streamline::{STEP, Stop, Streamline, angle_between};
+use kurbo::{Point, Vec2};
+use petgraph::unionfind::UnionFind;
+
+/// Nodes nearer to one another than this, in line widths, are one.
+const MERGE: f64 = 0.8;
+/// Ends on a body pair up across it when the stroke turns by less than this (35 degrees).
+const ACROSS_BODY: f64 = 0.61;
+/// Beyond the first pair at a branch, arms pair up when the stroke turns by less than this (60 degrees).
+const LATER_PAIR: f64 = 1.05;
+/// Arms never pair up when the stroke would turn by more than this (170 degrees).
+const LARGEST_TURN: f64 = 2.97;
+
+/// A node at which at least one line ends.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub position: Point,
+    /// Numbers of the ends.
+    pub ends: Vec<usize>,
+    /// Lines that pass through.
+    pub bodies: Vec<Place>,
+    /// Ends that belong to one stroke.
+    pub pairs: Vec<(usize, usize)>,
+}
+
+/// Groups ends by their contacts and solves each group's place.
+pub(super) fn resolve(
+    image: &LineImage,
+    lines: &[Streamline],
+    ends: &[Option<End>],
+    contacts: &[Contact],
+) -> Vec<Node> {
+    let solver = Solver { image, lines, ends, contacts };
+    let mut groups = UnionFind::new(ends.len());
+    for contact in contacts {
+        if let Touch::End(other) = contact.touch {
+            groups.union(contact.end, other);
+        }
+    }
+    let first: Vec<Node> = solver.nodes(&mut groups);
+    // Groups that were solved to the same place are one: stems that meet on a body, a corner beside a tee.
+    for (i, a) in first.iter().enumerate() {
+        for b in &first[..i] {
+            if (a.position - b.position).hypot() < MERGE * image.line_width && solver.may_merge(a, b) {
+                groups.union(a.ends[0], b.ends[0]);
+            }
+        }
+    }
+    let mut nodes = solver.nodes(&mut groups);
+    for node in &mut nodes {
+        node.pairs = solver.pairs(node);
+    }
+    nodes
+}
+
+struct Solver<'a> {
+    image: &'a LineImage,
+    lines: &'a [Streamline],
+    ends: &'a [Option<End>],
+    contacts: &'a [Contact],
+}
+
+impl Solver<'_> {
+    fn end(&self, id: usize) -> &End {
+        self.ends[id].as_ref().expect("numbers of existing ends only")
+    }
+
+    fn nodes(&self, groups: &mut UnionFind<usize>) -> Vec<Node> {
+        let mut members: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
+        for end in self.ends.iter().flatten() {
+            let id = end_id(end.line, end.side);
+            members.entry(groups.find_mut(id)).or_default().push(id);
+        }
+        members.into_values().map(|ends| self.node(ends)).collect()
+    }
+
+    fn node(&self, ends: Vec<usize>) -> Node {
+        let contacts: Vec<&Contact> = self.contacts.iter().filter(|c| ends.contains(&c.end)).collect();
+        let bodies = self.bodies(&ends, &contacts);
+        let position = if contacts.is_empty() && ends.len() == 1 {
+            self.free_end(self.end(ends[0]))
+        } else {
+            self.meeting_point(&ends, &bodies, &contacts)
+        };
+        Node { position, ends, bodies, pairs: Vec::new() }
+    }
+
+    /// The bodies that a group's ends stop at: per end the most plausible one, each line once, and not a line
+    /// that itself ends here.
+    fn bodies(&self, ends: &[usize], contacts: &[&Contact]) -> Vec<Place> {
+        let mut bodies: Vec<Place> = Vec::new();
+        for &id in ends {
+            let of_end = contacts.iter().filter(|c| c.end == id);
+            let to_body = of_end.filter_map(|c| match c.touch {
+                Touch::Body(place) => Some((c.misfit, place)),
+                Touch::End(_) => None,
+            });
+            let Some((_, place)) = to_body.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let near = |other: &Place| other.line == place.line && (other.at - place.at).abs() * STEP < 4.0 * self.image.line_width;
+            let ends_here = ends.iter().any(|&other| {
+                let n = self.lines[self.end(other).line].points.len() as f64;
+                let at = if self.end(other).side == 0 { 0.0 } else { n - 1.0 };
+                near(&Place { line: self.end(other).line, at })
+            });
+            if !ends_here && !bodies.iter().any(near) {
+                bodies.push(place);
+            }
+        }
+        bodies
+    }
+
+    /// Least squares over the lines of all arms, drawn towards the mean of the observed contacts.
+    fn meeting_point(&self, ends: &[usize], bodies: &[Place], contacts: &[&Contact]) -> Point {
+        let observed: Vec<Point> = if contacts.is_empty() {
+            ends.iter().map(|&e| self.free_end(self.end(e))).collect()
+        } else {
+            contacts.iter().map(|c| c.point).collect()
+        };
+        let centre = mean(&observed);
+        let mut arms: Vec<(Point, Vec2)> = ends.iter().map(|&e| self.arm_line(self.end(e), centre)).collect();
+        for &body in bodies {
+            arms.push((point_at(&self.lines[body.line], body.at), direction(self.lines, body)));
+        }
+        let mut solved = intersect_lines(&arms, centre, 0.02);
+        if let [body, ..] = bodies {
+            let (p, d) = (point_at(&self.lines[body.line], body.at), direction(self.lines, *body));
+            solved = p + d * (solved - p).dot(d);
+        }
+        let reach = 1.2 * self.image.line_width + 0.5;
+        let good = (solved - centre).hypot() < reach && self.image.ink.sample(solved) > 0.3;
+        if good { solved } else { centre }
+    }
+
+    /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
+    fn arm_line(&self, end: &End, towards: Point) -> (Point, Vec2) {
+        let tail = end.tail;
+        let normal = Vec2::new(-tail.heading.y, tail.heading.x);
+        let s = (towards - tail.point).dot(tail.heading).clamp(0.0, 4.0 * end.width);
+        let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
+        let d = tail.heading + normal * (tail.curvature * s);
+        (point, d.normalize())
+    }
+
+    /// The end of the pen's path: half a line width short of the end of the ink.
+    fn free_end(&self, end: &End) -> Point {
+        let n = self.lines[end.line].points.len();
+        let at = |k: usize| self.lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
+        let d = at(0) - at((n - 1).min(3));
+        let heading = if d.hypot() > 1e-9 { d.normalize() } else { end.tail.heading };
+        if end.stop == Stop::Border {
+            return end.point;
+        }
+        let mut edge = -end.width;
+        let mut s = edge;
+        while s < 1.5 {
+            if self.image.ink.sample(end.point + heading * s) >= 0.5 {
+                edge = s;
+            }
+            s += 0.125;
+        }
+        // Never past the middle of a short line.
+        let half_length = 0.5 * (n as f64 - 1.0) * STEP;
+        end.point + heading * (edge - 0.5 * end.width).max(-half_length + 0.25)
+    }
+
+    /// Two groups are one unless that would fold a short line onto itself.
+    fn may_merge(&self, a: &Node, b: &Node) -> bool {
+        let short = |e: &End| (self.lines[e.line].points.len() as f64) * STEP < 3.0 * self.image.line_width;
+        let touches_ink = |n: &Node| n.ends.len() > 1 || !n.bodies.is_empty();
+        let folds = a.ends.iter().any(|&x| b.ends.iter().any(|&y| x / 2 == y / 2 && short(self.end(x))));
+        !folds && (touches_ink(a) || touches_ink(b))
+    }
+
+    /// Which ends continue in which: least turn first.
+    fn pairs(&self, node: &Node) -> Vec<(usize, usize)> {
+        let mut candidates = Vec::new();
+        for (i, &a) in node.ends.iter().enumerate() {
+            for &b in &node.ends[..i] {
+                candidates.push((self.turn(a, b, node.position), b, a));
+            }
+        }
+        candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        for (turn, a, b) in candidates {
+            let most = match (node.bodies.is_empty(), pairs.is_empty()) {
+                (false, _) => ACROSS_BODY,
+                (true, true) => LARGEST_TURN,
+                (true, false) => LATER_PAIR,
+            };
+            let taken = pairs.iter().any(|p| [p.0, p.1].iter().any(|e| [a, b].contains(e)));
+            if turn <= most && !taken {
+                pairs.push((a, b));
+            }
+        }
+        pairs
+    }
+
+    /// How far a stroke turns that comes in by one end and leaves by another, radians.
+    fn turn(&self, a: usize, b: usize, at: Point) -> f64 {
+        let (_, into) = self.arm_line(self.end(a), at);
+        let (_, out) = self.arm_line(self.end(b), at);
+        angle_between(into, -out).abs()
+    }
+}
+
+/// The point of a line at a fractional index.
+pub(super) fn point_at(line: &Streamline, at: f64) -> Point {
+    let n = line.points.len();
+    let k = at.floor() as usize;
+    line.points[k % n].lerp(line.points[(k + 1).min(if line.closed { k + 1 } else { n - 1 }) % n], at - at.floor())
+}
+
+fn mean(points: &[Point]) -> Point {
+    let sum = points.iter().fold(Vec2::ZERO, |s, p| s + p.to_vec2());
+    (sum / points.len().max(1) as f64).to_point()
+}
+
+/// The point with the least sum of squared distances to lines given by a point and a unit direction, drawn
+/// towards `centre` with weight `prior`.
+fn intersect_lines(lines: &[(Point, Vec2)], centre: Point, prior: f64) -> Point {
+    let (mut a, mut b, mut c, mut r) = (prior, 0.0, prior, Vec2::ZERO);
+    for (p, d) in lines {
+        let n = Vec2::new(-d.y, d.x);
+        let distance = n.dot(*p - centre);
+        (a, b, c) = (a + n.x * n.x, b + n.x * n.y, c + n.y * n.y);
+        r += n * distance;
+    }
+    let det = a * c - b * b;
+    if det.abs() < 1e-12 {
+        return centre;
+    }
+    centre + Vec2::new(c * r.x - b * r.y, a * r.y - b * r.x) / det
+}

@@ -1,0 +1,237 @@
+//! One walk along the field.
+
+use super::coverage::{Coverage, Mark};
+use super::heading::{Tail, angle_between, turned};
+use super::seeds::Seed;
+use super::{STEP, Stop, Streamline};
+use crate::clean::LineImage;
+use crate::field::FrameField;
+use crate::profile::{Profile, cross_profile};
+use kurbo::{Point, Vec2};
+
+/// A root further than this from the heading (35 degrees) is another line's.
+const OWN_ROOT: f64 = 0.61;
+/// Share of the lateral error that one step takes back.
+const PULL: f64 = 0.5;
+/// The tightest turn, as a radius in line widths.
+const TIGHTEST: f64 = 0.5;
+/// How many line widths of past single profiles tell the heading through a junction.
+const MEMORY: f64 = 6.0;
+/// How far to look for ink across a break in a noisy line, in line widths.
+const BREAK: f64 = 0.9;
+/// How near another streamline of the same direction must be to cover a point, in line widths.
+const COVERED: f64 = 0.35;
+/// How far to coast along covered ink in the hope of coming out on its other side, in line widths.
+const COAST_COVERED: f64 = 8.0;
+
+/// A walk's last point that sat on a single line, and what came after it.
+struct Step {
+    point: Point,
+    heading: Vec2,
+    /// Ink width; NaN where the profile is not single.
+    width: f64,
+}
+
+/// Follows one line from a seed, both ways.
+pub(super) struct Walker<'a> {
+    image: &'a LineImage,
+    frames: &'a FrameField,
+    coverage: &'a mut Coverage,
+    id: u32,
+    /// Running estimate of the line's width.
+    width: f64,
+}
+
+impl<'a> Walker<'a> {
+    pub fn new(image: &'a LineImage, frames: &'a FrameField, coverage: &'a mut Coverage, id: u32) -> Self {
+        Self { image, frames, coverage, id, width: image.line_width }
+    }
+
+    /// The streamline through a seed.
+    pub fn trace(&mut self, seed: &Seed) -> Streamline {
+        let normal = Vec2::new(-seed.tangent.y, seed.tangent.x);
+        let mut start = seed.point;
+        let depth = f64::from(self.image.depth.at(seed.point).unwrap_or(1.0));
+        let profile = cross_profile(&self.image.ink, start, normal, 1.5 * depth + 2.0);
+        if let Some((width, middle)) = profile.and_then(|p| Some((p.width()?, p.middle()?)))
+            && width < 2.5 * depth + 0.5
+        {
+            self.width = width.max(1.0);
+            start += normal * middle;
+        }
+        let first = Step { point: start, heading: seed.tangent, width: self.width };
+        let width = self.width;
+        let (forward, forward_stop, closed) = self.walk(vec![first], 1);
+        if closed {
+            return streamline(&forward, true, [Stop::InkEnd; 2]);
+        }
+        self.width = width;
+        // The walk back starts on the forward walk's first points, so that its heading has a memory.
+        let memory = (MEMORY * self.width / STEP) as usize;
+        let reversed = forward.iter().take(memory).rev();
+        let past: Vec<Step> = reversed.map(|s| Step { point: s.point, heading: -s.heading, width: s.width }).collect();
+        let known = past.len();
+        let (backward, backward_stop, _) = self.walk(past, -1);
+        let mut steps: Vec<Step> = backward.into_iter().skip(known).rev().collect();
+        steps.extend(forward);
+        streamline(&steps, false, [backward_stop, forward_stop])
+    }
+
+    /// Walks on from the last of `steps`; returns all steps, why it stopped, and whether it closed a loop.
+    fn walk(&mut self, mut steps: Vec<Step>, sign: i32) -> (Vec<Step>, Stop, bool) {
+        let known = steps.len();
+        let limit = 16 * (self.image.mask.count() + 64);
+        let mut covered_from: Option<usize> = None;
+        let (mut free_run, mut covered_run) = (0, 0);
+        loop {
+            let index = sign * (steps.len() - known) as i32;
+            let here = &steps[steps.len() - 1];
+            self.coverage.add(Mark {
+                point: here.point,
+                heading: here.heading * f64::from(sign),
+                streamline: self.id,
+                index,
+            });
+            let Some(mut next) = self.advance(&steps, covered_from.is_some()) else {
+                let stop = if covered_from.is_some() { Stop::Merged } else { self.stop_at(here.point) };
+                return (steps, stop, false);
+            };
+            let covering = self.covering(&next, index);
+            if let Some(mark) = covering
+                && mark.streamline == self.id
+                && sign > 0
+                && f64::from(mark.index) * STEP < 2.0 * self.width
+                && mark.heading.dot(next.heading) > 0.9
+                && covered_from.is_none()
+            {
+                return (steps, Stop::Merged, true);
+            }
+            covered_run = if covering.is_some() { covered_run + 1 } else { 0 };
+            let lasting = f64::from(covered_run) * STEP > self.width;
+            match (covering, covered_from) {
+                (Some(_), None) if lasting || !next.width.is_nan() => covered_from = Some(steps.len()),
+                (Some(_), Some(_)) => free_run = 0,
+                (None, Some(_)) => {
+                    free_run += 1;
+                    if f64::from(free_run) * STEP > 0.75 * self.width {
+                        covered_from = None;
+                        free_run = 0;
+                    }
+                }
+                _ => {}
+            }
+            if let Some(from) = covered_from {
+                next.width = f64::NAN;
+                if (steps.len() - from) as f64 * STEP > COAST_COVERED * self.width {
+                    return (steps, Stop::Merged, false);
+                }
+            }
+            steps.push(next);
+            if steps.len() > limit {
+                return (steps, Stop::Merged, false);
+            }
+        }
+    }
+
+    /// The point of the same direction that already covers a step, this walk's own latest points aside.
+    fn covering(&self, step: &Step, index: i32) -> Option<Mark> {
+        let radius = (COVERED * self.width).max(0.6);
+        let own = (4.0 * self.width / STEP) as i32;
+        self.coverage.nearest(step.point, step.heading, radius, |mark| {
+            mark.streamline != self.id || (mark.index - index).abs() > own
+        })
+    }
+
+    /// The next step, or `None` where the ink ends.
+    fn advance(&mut self, steps: &[Step], coasting: bool) -> Option<Step> {
+        let here = &steps[steps.len() - 1];
+        let heading = self.next_heading(steps, coasting);
+        let mut point = here.point + heading * STEP;
+        let normal = Vec2::new(-heading.y, heading.x);
+        let Some(profile) = self.profile(point, normal) else {
+            return self.across_break(here.point, heading);
+        };
+        if coasting {
+            return Some(Step { point, heading, width: f64::NAN });
+        }
+        if let Some(shift) = profile.shift(self.width) {
+            point += normal * (PULL * shift).clamp(-0.35, 0.35);
+        }
+        let mut width = f64::NAN;
+        if profile.is_single(self.width) {
+            width = profile.width().unwrap_or(f64::NAN);
+            self.width += 0.04 * (width - self.width);
+        }
+        Some(Step { point, heading, width })
+    }
+
+    /// On a single line, the field's root; inside a junction, the heading and curvature of the line so far.
+    fn next_heading(&self, steps: &[Step], coasting: bool) -> Vec2 {
+        let here = &steps[steps.len() - 1];
+        let most = STEP / (TIGHTEST * self.width);
+        let single = !here.width.is_nan() && !coasting;
+        let ahead = here.point + here.heading * (0.5 * STEP);
+        let root = self.frames.along(ahead, here.heading);
+        let turn = root.map(|r| angle_between(here.heading, r)).filter(|t| t.abs() < OWN_ROOT);
+        if single {
+            return turned(here.heading, turn.unwrap_or(0.0).clamp(-most, most));
+        }
+        // The first step of a coast takes its heading from the line's whole recent course.
+        let before = steps.len().checked_sub(2).map(|i| &steps[i]);
+        let tail = self.tail(steps);
+        let entering = before.is_none_or(|b| !b.width.is_nan());
+        let heading = if entering { tail.map_or(here.heading, |t| t.heading) } else { here.heading };
+        let curvature = tail.map_or(0.0, |t| t.curvature).clamp(-0.5 / self.width, 0.5 / self.width);
+        let follow = if coasting { 0.0 } else { 0.1 * turn.unwrap_or(0.0) };
+        turned(heading, (curvature * STEP + follow).clamp(-most, most))
+    }
+
+    /// The course of the last single profiles before the junction.
+    fn tail(&self, steps: &[Step]) -> Option<Tail> {
+        let last = steps.iter().rposition(|s| !s.width.is_nan())?;
+        let memory = (MEMORY * self.width / STEP) as usize;
+        let run = steps[..=last].iter().rev().take(memory).take_while(|s| !s.width.is_nan()).count();
+        let points: Vec<Point> = steps[last + 1 - run..=last].iter().map(|s| s.point).collect();
+        Tail::fit(&points, 0.1)
+    }
+
+    /// A step over a break in a noisy line, when ink of about the same direction lies ahead.
+    fn across_break(&self, from: Point, heading: Vec2) -> Option<Step> {
+        if self.image.noise == 0.0 {
+            return None;
+        }
+        let normal = Vec2::new(-heading.y, heading.x);
+        let reach = BREAK * self.width;
+        let mut distance = STEP;
+        while distance < reach {
+            distance += STEP;
+            let p = from + heading * distance;
+            let found = self.profile(p, normal).is_some_and(|profile| profile.is_single(self.width));
+            if found && self.frames.along(p, heading).is_some_and(|r| angle_between(heading, r).abs() < 0.5 * OWN_ROOT)
+            {
+                return Some(Step { point: from + heading * STEP, heading, width: f64::NAN });
+            }
+        }
+        None
+    }
+
+    fn profile(&self, p: Point, normal: Vec2) -> Option<Profile> {
+        cross_profile(&self.image.ink, p, normal, 0.85 * self.width + 1.0)
+    }
+
+    fn stop_at(&self, p: Point) -> Stop {
+        let (w, h) = (self.image.mask.width() as f64, self.image.mask.height() as f64);
+        let margin = 1.0;
+        let inside = p.x > margin && p.y > margin && p.x < w - margin && p.y < h - margin;
+        if inside { Stop::InkEnd } else { Stop::Border }
+    }
+}
+
+fn streamline(steps: &[Step], closed: bool, stops: [Stop; 2]) -> Streamline {
+    Streamline {
+        points: steps.iter().map(|s| s.point).collect(),
+        widths: steps.iter().map(|s| s.width).collect(),
+        closed,
+        stops,
+    }
+}
