@@ -80,13 +80,14 @@ mod tests {
             let stored = (f64::from(dpi) / INCH).round();
             assert_eq!(per_metre(stored), f64::from(dpi));
         }
-        assert_eq!(per_metre(11850.0), 11850.0 * INCH);
+        assert_eq!(per_metre(11830.0), 11830.0 * INCH);
     }
 
     #[test]
     fn units_and_nonsense() {
         assert_eq!(tiff_dpi(300.0, 2), Some(300.0));
-        assert_eq!(tiff_dpi(118.110236, 3), Some(118.110236 * 2.54));
+        assert_eq!(tiff_dpi(118.110236, 3), Some(300.0));
+        assert_eq!(tiff_dpi(118.5, 3), Some(118.5 * 2.54));
         assert_eq!(tiff_dpi(300.0, 1), None);
         assert_eq!(tiff_dpi(f64::NAN, 2), None);
         assert_eq!(tiff_dpi(0.0, 2), None);

@@ -130,16 +130,16 @@ mod tests {
 
     #[test]
     fn the_scale_follows_size_then_resolution_then_the_smallest_side() {
-        let tree = |w, h| {
+        let tree = |w: f64, h: f64| {
             let text = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{w}' height='{h}'/>");
             Tree::from_str(&text, &usvg::Options::default()).unwrap()
         };
         let options = |size, dpi| LoadOptions { size, dpi, ..LoadOptions::default() };
-        assert_eq!(canvas(&tree(24, 12), scale(&tree(24, 12), &options(None, None))), (512, 256));
-        assert_eq!(scale(&tree(2000, 100), &options(None, None)), 1.0);
-        assert_eq!(scale(&tree(24, 12), &options(None, Some(192.0))), 2.0);
+        assert_eq!(canvas(&tree(24.0, 12.0), scale(&tree(24.0, 12.0), &options(None, None))), (512, 256));
+        assert_eq!(scale(&tree(2000.0, 100.0), &options(None, None)), 1.0);
+        assert_eq!(scale(&tree(24.0, 12.0), &options(None, Some(192.0))), 2.0);
         for size in [1, 7, 333, 1000, 4096] {
-            let t = tree("33.3", "77.7");
+            let t = tree(33.3, 77.7);
             assert_eq!(canvas(&t, scale(&t, &options(Some(size), Some(300.0)))).1, u64::from(size));
         }
     }

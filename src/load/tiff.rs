@@ -153,7 +153,7 @@ impl Samples {
         let extra = reader.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples)?.unwrap_or_default();
         let mut data = DecodingResult::U8(Vec::new());
         let layout = reader.read_image_to_buffer(&mut data)?;
-        let element = data.as_buffer(0).byte_len().max(1);
+        let element = usize::from(color.bit_depth()).div_ceil(8);
         let row = layout.row_stride.map_or(0, |n| n.get()) / element;
         let (step, plane) = match layout.planes {
             0 | 1 => (usize::from(color.num_samples()), 1),
