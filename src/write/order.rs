@@ -58,7 +58,7 @@ fn greedy(ends: &[[Point; 2]], strokes: &[usize]) -> Vec<(usize, bool)> {
     let mut left = RTree::bulk_load(entries);
     let mut order = Vec::with_capacity(strokes.len());
     let mut at = [0.0, 0.0];
-    while let Some(&nearest) = left.nearest_neighbor(at) {
+    while let Some(&nearest) = left.nearest_neighbor(&at) {
         let (i, reversed) = nearest.data;
         left.remove(&entry(ends, i, false));
         left.remove(&entry(ends, i, true));
