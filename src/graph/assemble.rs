@@ -13,6 +13,9 @@ use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 /// Points nearer to a node than this, in line widths, are inside the junction and do not speak for the line.
 const INSIDE: f64 = 0.75;
 
+/// A stroke that turns by less than this at a node (35 degrees) has no junction to be cut out.
+const SMOOTH: f64 = 0.61;
+
 /// A cut of a line at a node.
 #[derive(Clone, Copy, Debug)]
 struct Cut {
@@ -173,8 +176,8 @@ impl<'a> Assembly<'a> {
     /// Lines are chained through paired ends; every line is in one trail.
     fn add_trails(&mut self, edges: &[Vec<EdgeIndex>]) {
         let mut partner = vec![None; 2 * edges.len()];
-        for (a, b) in self.nodes.iter().flat_map(|n| &n.pairs) {
-            (partner[*a], partner[*b]) = (Some(*b), Some(*a));
+        for [a, b] in self.nodes.iter().flat_map(|n| &n.pairs).map(|p| p.ends) {
+            (partner[a], partner[b]) = (Some(b), Some(a));
         }
         let mut used = vec![false; edges.len()];
         // Open chains start at an end without a partner; what is left over is closed.
@@ -246,29 +249,37 @@ fn trim(
     let node = |side: usize| &nodes[node_of_end[end_id(i, side)].expect("every end has a node")];
     let (first, last) = (node(0), node(1));
     let n = line.points.len();
-    let inside = |node: &Node, end: &End, k: usize| {
-        let d = line.points[k] - node.position;
-        if node.ends.len() == 1 && node.bodies.is_empty() {
-            let near = d.hypot() < 3.0 * image.line_width;
-            return near && d.dot(end.tail.heading) > -0.3 && end.stop != Stop::Border;
-        }
-        d.hypot() < INSIDE * image.line_width || d.dot(end.tail.heading) > 0.0 && d.hypot() < 3.0 * image.line_width
-    };
-    let mut from = a.tip.min(n - 1);
-    while from < n - 1 && inside(first, &a, from) {
-        from += 1;
-    }
-    let mut to = b.tip.min(n - 1);
-    while to > from && inside(last, &b, to) {
-        to -= 1;
-    }
+    let from = kept(image, line, &a, first);
+    let to = n - 1 - kept(image, line, &b, last);
     let (mut points, mut widths) = (vec![first.position], vec![f64::NAN]);
-    if to > from {
+    if to >= from {
         points.extend(&line.points[from..=to]);
         widths.extend(&line.widths[from..=to]);
     }
     points.push(last.position);
     widths.push(f64::NAN);
-    let stops = line.stops;
-    (Streamline { points, widths, closed: false, stops }, from as f64 - 1.0)
+    (Streamline { points, widths, closed: false, stops: line.stops }, from as f64 - 1.0)
+}
+
+/// How many points at an end are to go: those beyond the node, and those inside its junction.
+fn kept(image: &LineImage, line: &Streamline, end: &End, node: &Node) -> usize {
+    let n = line.points.len();
+    let at = |k: usize| line.points[if end.side == 0 { k } else { n - 1 - k }];
+    let is_free = node.ends.len() == 1 && node.bodies.is_empty();
+    if is_free && end.stop == Stop::Border {
+        return 1;
+    }
+    // The place on the last stretch that comes nearest to the node.
+    let tip = if end.side == 0 { end.tip } else { n - 1 - end.tip };
+    let stretch = (tip + (6.0 * end.width / STEP) as usize).min(n - 1);
+    let distance = |k: usize| (at(k) - node.position).hypot();
+    let nearest = (0..=stretch).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
+    let id = end_id(end.line, end.side);
+    let runs_on = node.pairs.iter().any(|p| p.ends.contains(&id) && p.turn < SMOOTH);
+    let radius = if is_free || runs_on { 0.6 * STEP } else { INSIDE * image.line_width };
+    let mut k = nearest;
+    while k < n - 1 && distance(k) < radius {
+        k += 1;
+    }
+    k
 }

@@ -13,6 +13,9 @@ const PROTRUSION: f64 = 0.42;
 /// Parts of one line are taken for different lines when they are this many line widths apart along it.
 const OWN: f64 = 4.0;
 
+/// Two ends that run along each other for at most this many line widths are one line.
+const OVERLAP: f64 = 10.0;
+
 /// A line's place: index of the line and a fractional index of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
@@ -117,6 +120,13 @@ fn intersect(a: Line, b: Line) -> Option<(f64, f64)> {
     ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s)).then_some((t, s))
 }
 
+/// The point of a line at a fractional index.
+pub(super) fn point_at(line: &Streamline, at: f64) -> Point {
+    let n = line.points.len();
+    let k = at.floor() as usize;
+    line.points[k % n].lerp(line.points[(k + 1).min(if line.closed { k + 1 } else { n - 1 }) % n], at - at.floor())
+}
+
 /// Direction of a line at a place.
 pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
     let line = &lines[place.line];
@@ -135,7 +145,9 @@ pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
 pub(super) fn contacts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]) -> Vec<Contact> {
     let index = LineIndex::new(lines);
     let finder = Finder { image, lines, ends, index };
-    ends.iter().flatten().flat_map(|end| finder.of_end(end)).collect()
+    let mut contacts: Vec<Contact> = ends.iter().flatten().flat_map(|end| finder.of_end(end)).collect();
+    finder.join_overlaps(&mut contacts);
+    contacts
 }
 
 struct Finder<'a> {
@@ -207,7 +219,7 @@ impl Finder<'_> {
         let points = &self.lines[end.line].points;
         let heading = (points[last] - points[before]).normalize();
         let mut length = 0.0;
-        while length < most && self.image.ink.sample(end.point + heading * (length + 0.25)) > 0.3 {
+        while length < most && self.image.ink.sample(end.point + heading * (length + 0.25)) > 0.5 {
             length += 0.25;
         }
         length
@@ -278,9 +290,39 @@ impl Finder<'_> {
         None
     }
 
+    /// Two walks from opposite sides that ran into each other's ink, each stopping on the other's body, are one
+    /// line: their ends meet in the middle of the stretch that both have covered.
+    fn join_overlaps(&self, contacts: &mut [Contact]) {
+        for i in 0..contacts.len() {
+            for j in 0..i {
+                let (a, b) = (contacts[i], contacts[j]);
+                let (Touch::Body(on_b), Touch::Body(on_a)) = (a.touch, b.touch) else { continue };
+                if on_b.line != b.end / 2 || on_a.line != a.end / 2 || on_a.line == on_b.line {
+                    continue;
+                }
+                let (overlap_a, overlap_b) = (self.to_end(on_a, a.end), self.to_end(on_b, b.end));
+                let limit = OVERLAP * self.image.line_width;
+                let (da, db) = (direction(self.lines, on_a), direction(self.lines, on_b));
+                if overlap_a.max(overlap_b) < limit && da.dot(db).abs() > 0.6 {
+                    let towards_end = if b.end % 2 == 0 { -1.0 } else { 1.0 };
+                    let middle = Place { line: on_b.line, at: on_b.at + towards_end * 0.5 * overlap_b / STEP };
+                    let point = point_at(&self.lines[middle.line], middle.at);
+                    contacts[i] = Contact { touch: Touch::End(b.end), point, ..a };
+                    contacts[j] = Contact { touch: Touch::End(a.end), point, ..b };
+                }
+            }
+        }
+    }
+
+    /// Length of a line from a place to one of its ends, in pixels.
+    fn to_end(&self, place: Place, end: usize) -> f64 {
+        let last = (self.lines[place.line].points.len() - 1) as f64;
+        STEP * if end % 2 == 0 { place.at } else { last - place.at }
+    }
+
     /// Whether there is ink all the way between two points.
     fn is_inked(&self, a: Point, b: Point) -> bool {
         let count = ((b - a).hypot() / 0.5).ceil() as usize;
-        (0..=count).all(|k| self.image.ink.sample(a.lerp(b, k as f64 / count.max(1) as f64)) > 0.3)
+        (0..=count).all(|k| self.image.ink.sample(a.lerp(b, k as f64 / count.max(1) as f64)) > 0.5)
     }
 }

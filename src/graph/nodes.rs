@@ -1,6 +1,6 @@
 //! Ends that belong together become one node; its place is solved from its arms.
 
-use super::contacts::{Contact, Place, Touch, direction};
+use super::contacts::{Contact, Place, Touch, direction, point_at};
 use super::ends::{End, end_id};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline, angle_between};
@@ -16,6 +16,14 @@ const LATER_PAIR: f64 = 1.05;
 /// Arms never pair up when the stroke would turn by more than this (170 degrees).
 const LARGEST_TURN: f64 = 2.97;
 
+/// Two ends through which one stroke runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub ends: [usize; 2],
+    /// How far the stroke turns, radians.
+    pub turn: f64,
+}
+
 /// A node at which at least one line ends.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
@@ -25,7 +33,7 @@ pub(super) struct Node {
     /// Lines that pass through.
     pub bodies: Vec<Place>,
     /// Ends that belong to one stroke.
-    pub pairs: Vec<(usize, usize)>,
+    pub pairs: Vec<Pair>,
 }
 
 /// Groups ends by their contacts and solves each group's place.
@@ -177,7 +185,7 @@ impl Solver<'_> {
     }
 
     /// Which ends continue in which: least turn first.
-    fn pairs(&self, node: &Node) -> Vec<(usize, usize)> {
+    fn pairs(&self, node: &Node) -> Vec<Pair> {
         let mut candidates = Vec::new();
         for (i, &a) in node.ends.iter().enumerate() {
             for &b in &node.ends[..i] {
@@ -185,16 +193,16 @@ impl Solver<'_> {
             }
         }
         candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let mut pairs: Vec<(usize, usize)> = Vec::new();
+        let mut pairs: Vec<Pair> = Vec::new();
         for (turn, a, b) in candidates {
             let most = match (node.bodies.is_empty(), pairs.is_empty()) {
                 (false, _) => ACROSS_BODY,
                 (true, true) => LARGEST_TURN,
                 (true, false) => LATER_PAIR,
             };
-            let taken = pairs.iter().any(|p| [p.0, p.1].iter().any(|e| [a, b].contains(e)));
+            let taken = pairs.iter().any(|p| p.ends.iter().any(|e| [a, b].contains(e)));
             if turn <= most && !taken {
-                pairs.push((a, b));
+                pairs.push(Pair { ends: [a, b], turn });
             }
         }
         pairs
@@ -206,13 +214,6 @@ impl Solver<'_> {
         let (_, out) = self.arm_line(self.end(b), at);
         angle_between(into, -out).abs()
     }
-}
-
-/// The point of a line at a fractional index.
-pub(super) fn point_at(line: &Streamline, at: f64) -> Point {
-    let n = line.points.len();
-    let k = at.floor() as usize;
-    line.points[k % n].lerp(line.points[(k + 1).min(if line.closed { k + 1 } else { n - 1 }) % n], at - at.floor())
 }
 
 fn mean(points: &[Point]) -> Point {

@@ -7,6 +7,7 @@
 
 mod coverage;
 pub(crate) mod heading;
+mod relax;
 mod seeds;
 mod walk;
 
@@ -54,7 +55,10 @@ pub fn trace(image: &LineImage, frames: &FrameField) -> Vec<Streamline> {
             continue;
         }
         let id = streamlines.len() as u32;
-        let streamline = Walker::new(image, frames, &mut coverage, id).trace(&seed);
+        let mut walker = Walker::new(image, frames, &mut coverage, id);
+        let mut streamline = walker.trace(&seed);
+        let width = walker.width();
+        relax::relax(image, &mut streamline, width);
         let fresh = coverage.paint(&streamline.points, &streamline.widths);
         // Less ink of its own than half a dot: a bump on another line's edge.
         if (fresh as f64) < 0.4 * image.line_width * image.line_width {

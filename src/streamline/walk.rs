@@ -13,6 +13,9 @@ use kurbo::{Point, Vec2};
 const OWN_ROOT: f64 = 0.61;
 /// Share of the lateral error that one step takes back.
 const PULL: f64 = 0.5;
+/// How much a walk beside the ink's middle turns towards it, radians per line width of error. In tight bends,
+/// where the field knows two directions and the nearer one lags behind, this carries the walk round.
+const STEER: f64 = 0.8;
 /// The tightest turn, as a radius in line widths.
 const TIGHTEST: f64 = 0.5;
 /// How many line widths of past single profiles tell the heading through a junction.
@@ -24,12 +27,17 @@ const COVERED: f64 = 0.35;
 /// How far to coast along covered ink in the hope of coming out on its other side, in line widths.
 const COAST_COVERED: f64 = 8.0;
 
+/// A line's middle is inked at least this much; below, the line has ended.
+const INK_END: f32 = 0.5;
+
 /// A walk's last point that sat on a single line, and what came after it.
 struct Step {
     point: Point,
     heading: Vec2,
     /// Ink width; NaN where the profile is not single.
     width: f64,
+    /// How far the ink's middle lay beside the walk, along the normal; the line turns that way.
+    drift: f64,
 }
 
 /// Follows one line from a seed, both ways.
@@ -47,6 +55,11 @@ impl<'a> Walker<'a> {
         Self { image, frames, coverage, id, width: image.line_width }
     }
 
+    /// The width of the line at the end of the last walk.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
     /// The streamline through a seed.
     pub fn trace(&mut self, seed: &Seed) -> Streamline {
         let normal = Vec2::new(-seed.tangent.y, seed.tangent.x);
@@ -59,7 +72,7 @@ impl<'a> Walker<'a> {
             self.width = width.max(1.0);
             start += normal * middle;
         }
-        let first = Step { point: start, heading: seed.tangent, width: self.width };
+        let first = Step { point: start, heading: seed.tangent, width: self.width, drift: 0.0 };
         let width = self.width;
         let (forward, forward_stop, closed) = self.walk(vec![first], 1);
         if closed {
@@ -69,7 +82,7 @@ impl<'a> Walker<'a> {
         // The walk back starts on the forward walk's first points, so that its heading has a memory.
         let memory = (MEMORY * self.width / STEP) as usize;
         let reversed = forward.iter().take(memory).rev();
-        let past: Vec<Step> = reversed.map(|s| Step { point: s.point, heading: -s.heading, width: s.width }).collect();
+        let past: Vec<Step> = reversed.map(|s| Step { point: s.point, heading: -s.heading, width: s.width, drift: 0.0 }).collect();
         let known = past.len();
         let (backward, backward_stop, _) = self.walk(past, -1);
         let mut steps: Vec<Step> = backward.into_iter().skip(known).rev().collect();
@@ -148,11 +161,12 @@ impl<'a> Walker<'a> {
         let heading = self.next_heading(steps, coasting);
         let mut point = here.point + heading * STEP;
         let normal = Vec2::new(-heading.y, heading.x);
-        let Some(profile) = self.profile(point, normal) else {
+        let inked = self.image.ink.sample(point) >= INK_END;
+        let Some(profile) = self.profile(point, normal).filter(|_| inked) else {
             return self.across_break(here.point, heading);
         };
         if coasting {
-            return Some(Step { point, heading, width: f64::NAN });
+            return Some(Step { point, heading, width: f64::NAN, drift: 0.0 });
         }
         if let Some(shift) = profile.shift(self.width) {
             point += normal * (PULL * shift).clamp(-0.35, 0.35);
@@ -162,7 +176,8 @@ impl<'a> Walker<'a> {
             width = profile.width().unwrap_or(f64::NAN);
             self.width += 0.04 * (width - self.width);
         }
-        Some(Step { point, heading, width })
+        let drift = if width.is_nan() { 0.0 } else { profile.middle().unwrap_or(0.0) };
+        Some(Step { point, heading, width, drift })
     }
 
     /// On a single line, the field's root; inside a junction, the heading and curvature of the line so far.
@@ -174,7 +189,8 @@ impl<'a> Walker<'a> {
         let root = self.frames.along(ahead, here.heading);
         let turn = root.map(|r| angle_between(here.heading, r)).filter(|t| t.abs() < OWN_ROOT);
         if single {
-            return turned(here.heading, turn.unwrap_or(0.0).clamp(-most, most));
+            let steer = STEER * here.drift / self.width;
+            return turned(here.heading, (turn.unwrap_or(0.0) + steer).clamp(-most, most));
         }
         // The first step of a coast takes its heading from the line's whole recent course.
         let before = steps.len().checked_sub(2).map(|i| &steps[i]);
@@ -209,7 +225,7 @@ impl<'a> Walker<'a> {
             let found = self.profile(p, normal).is_some_and(|profile| profile.is_single(self.width));
             if found && self.frames.along(p, heading).is_some_and(|r| angle_between(heading, r).abs() < 0.5 * OWN_ROOT)
             {
-                return Some(Step { point: from + heading * STEP, heading, width: f64::NAN });
+                return Some(Step { point: from + heading * STEP, heading, width: f64::NAN, drift: 0.0 });
             }
         }
         None
