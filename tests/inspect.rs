@@ -1,15 +1,16 @@
 //! The pictures of the stages. They are left in the folder `tmp/inspect` of Cargo's target directory.
 
-use fieldtrace::clean::LineImage;
+use fieldtrace::clean::{LineImage, clean};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
 use fieldtrace::field::PolyVectorField;
 use fieldtrace::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use fieldtrace::hooks::Observer;
 use fieldtrace::inspect::{DebugDir, drawing_overlay, field_overlay, graph_overlay, streamlines_overlay, to_png};
 use fieldtrace::load::Scan;
+use fieldtrace::options::Options;
 use fieldtrace::raster::Raster;
 use fieldtrace::render::render;
-use fieldtrace::streamline::Streamline;
+use fieldtrace::streamline::{Stop, Streamline};
 use kurbo::{Arc, Circle, CubicBez, Line, Point, Rect, Shape, Vec2};
 use std::path::Path;
 
@@ -38,7 +39,7 @@ fn line_image() -> LineImage {
     let ink = render(&drawing());
     let solids = drawing().fills;
     let mask = Raster::from_fn(160, 120, |x, y| ink[(x, y)] > 0.5 && !(60..85).contains(&x));
-    LineImage { ink, mask, line_width: 3.0, scale: 1.0, noise: 0.0, solids }
+    LineImage { mask, solids, ..clean(&scan(), &Options::default()) }
 }
 
 fn field() -> PolyVectorField {
@@ -48,13 +49,17 @@ fn field() -> PolyVectorField {
     })
 }
 
+fn streamline(points: Vec<Point>, closed: bool) -> Streamline {
+    Streamline { widths: vec![f64::NAN; points.len()], points, closed, stops: [Stop::InkEnd; 2] }
+}
+
 fn streamlines() -> Vec<Streamline> {
     let along = |s: &Stroke| {
         let mut points = Vec::new();
         kurbo::flatten(s.centreline.to_path(), 0.05, |e| points.extend(e.end_point()));
-        Streamline { widths: vec![f64::NAN; points.len()], points, closed: s.centreline.is_closed() }
+        streamline(points, s.centreline.is_closed())
     };
-    drawing().strokes.iter().map(along).chain([Streamline { points: vec![], widths: vec![], closed: true }]).collect()
+    drawing().strokes.iter().map(along).chain([streamline(vec![], true)]).collect()
 }
 
 /// A graph with a node of each kind.
@@ -126,8 +131,7 @@ fn a_legend_counts_the_nodes() {
 
 #[test]
 fn the_line_image_may_be_of_another_scale() {
-    let line =
-        Streamline { points: vec![(20.0, 40.0).into(), (60.0, 40.0).into()], widths: vec![1.0; 2], closed: false };
+    let line = streamline(vec![(20.0, 40.0).into(), (60.0, 40.0).into()], false);
     assert!(streamlines_overlay(&scan(), 4.0, &[line]).contains("M5 10L15 10"));
 }
 

@@ -52,7 +52,7 @@ impl Overlay {
 
     /// A length that can be seen and hides little: a few pixels of the PNG.
     pub(super) fn unit(&self) -> f64 {
-        2.4 / png_scale(self.width, self.height)
+        3.2 / png_scale(self.width, self.height)
     }
 
     /// The input's size.
@@ -67,9 +67,9 @@ impl Overlay {
 
     /// The SVG, with a legend in a strip below the input.
     pub(super) fn finish(self, legend: &[Entry]) -> String {
-        let font = (self.width / 32.0).clamp(2.0, 40.0);
-        let (legend, height) = legend_strip(legend, self.width.max(8.0 * font), self.height, font);
-        let (width, height) = (self.width.max(1.0), self.height + height);
+        let font = (self.width / 45.0).clamp(3.0, 60.0);
+        let (legend, height) = legend_strip(legend, self.width.max(20.0 * font), self.height, font);
+        let (width, height) = (self.width.max(20.0 * font), self.height + height);
         let exact = Rounding::new(DECIMALS);
         let view = format!("0 0 {} {}", exact.text(width), exact.text(height));
         let mut document = Document::new()
