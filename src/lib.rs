@@ -8,11 +8,14 @@ pub mod field;
 pub mod fit;
 pub mod graph;
 pub mod hooks;
+pub mod inspect;
 pub mod load;
 pub mod options;
 pub mod pipeline;
 mod profile;
 pub mod raster;
+pub mod render;
 pub mod streamline;
+pub mod write;
 
 pub use error::{Error, Result};

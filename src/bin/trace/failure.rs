@@ -1,0 +1,58 @@
+//! Why the program ends without a result.
+
+use fieldtrace::Error;
+use std::fmt;
+
+/// An end without a result, with its one-line message.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The command line asks for something that cannot be done: exit code 2.
+    Usage(String),
+    /// A file could not be read, traced or written: exit code 1.
+    File(String),
+}
+
+impl Failure {
+    /// The program's exit code.
+    pub(crate) fn code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::File(_) => 1,
+        }
+    }
+
+    /// What went wrong with an input, as `FILE: reason: cause`.
+    pub(crate) fn of(input: &str, error: &Error) -> Self {
+        if let Error::Option { .. } = error {
+            return Self::Usage(format!("--{}", one_line(error)));
+        }
+        let names_its_file = matches!(
+            error,
+            Error::Read { .. }
+                | Error::Decode { .. }
+                | Error::TooLarge { .. }
+                | Error::NothingVisible { .. }
+                | Error::Write { .. }
+        );
+        let text = one_line(error);
+        Self::File(if names_its_file { text } else { format!("{input}: {text}") })
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Usage(text) | Self::File(text)) = self;
+        f.write_str(text)
+    }
+}
+
+/// An error and its causes in one line.
+fn one_line(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        text = format!("{text}: {cause}");
+        source = cause.source();
+    }
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,101 @@
+//! What a trace shows while it runs: pictures of the stages, and their seconds and counts.
+
+use fieldtrace::clean::LineImage;
+use fieldtrace::drawing::Drawing;
+use fieldtrace::error::Result;
+use fieldtrace::field::PolyVectorField;
+use fieldtrace::graph::StrokeGraph;
+use fieldtrace::hooks::Observer;
+use fieldtrace::inspect::DebugDir;
+use fieldtrace::streamline::Streamline;
+use std::time::Instant;
+
+/// Seconds and counts of the stages so far, printed where the user asked for it.
+pub(crate) struct Stages {
+    verbose: bool,
+    since: Instant,
+}
+
+impl Stages {
+    /// Starts the clock.
+    pub(crate) fn start(verbose: bool) -> Self {
+        Self { verbose, since: Instant::now() }
+    }
+
+    /// Ends a stage.
+    pub(crate) fn done(&mut self, stage: &str, what: impl FnOnce() -> String) {
+        if self.verbose {
+            eprintln!("{stage:<12}{:>8.3} s  {}", self.since.elapsed().as_secs_f64(), what());
+        }
+        self.since = Instant::now();
+    }
+
+    /// Takes what was done since the last stage out of the next one.
+    fn skip(&mut self) {
+        self.since = Instant::now();
+    }
+}
+
+/// An observer that tells and draws what each stage made.
+pub(crate) struct Watch<'a> {
+    /// The clock.
+    pub(crate) stages: &'a mut Stages,
+    /// Where the pictures go.
+    pub(crate) debug: Option<DebugDir<'a>>,
+    /// Streamlines so far.
+    pub(crate) streamlines: usize,
+}
+
+impl Watch<'_> {
+    /// Has the stage drawn, off the clock.
+    fn draw(&mut self, stage: impl FnOnce(&mut DebugDir) -> Result<()>) -> Result<()> {
+        let drawn = self.debug.as_mut().map_or(Ok(()), stage);
+        self.stages.skip();
+        drawn
+    }
+}
+
+impl Observer for Watch<'_> {
+    fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
+        self.stages.done("clean", || {
+            let (ink, solids) = (image.mask.count(), image.solids.len());
+            format!("{ink} ink pixels, lines {:.1} wide, scale {:.2}, {solids} solids", image.line_width, image.scale)
+        });
+        self.draw(|debug| debug.on_line_image(image))
+    }
+
+    fn on_field(&mut self, image: &LineImage, field: &mut PolyVectorField) -> Result<()> {
+        let defined = || field.confidence().data().iter().filter(|&&c| c > 0.0).count();
+        self.stages.done("estimate", || format!("{} pixels with directions", defined()));
+        self.draw(|debug| debug.on_field(image, field))
+    }
+
+    fn on_streamline(&mut self, image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
+        if self.streamlines == 0 {
+            self.stages.done("streamline", || "traced".into());
+        }
+        self.streamlines += 1;
+        if let Some(debug) = &mut self.debug {
+            debug.on_streamline(image, streamline)?;
+        }
+        Ok(true)
+    }
+
+    fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {
+        let streamlines = self.streamlines;
+        self.stages.done("graph", || {
+            let (nodes, edges) = (graph.graph.node_count(), graph.graph.edge_count());
+            let (trails, dots) = (graph.trails.len(), graph.dots.len());
+            format!("{streamlines} streamlines, {nodes} nodes, {edges} edges, {trails} trails, {dots} dots")
+        });
+        self.draw(|debug| debug.on_graph(image, graph))
+    }
+
+    fn on_drawing(&mut self, drawing: &mut Drawing) -> Result<()> {
+        self.stages.done("fit", || {
+            let (strokes, pieces) = (drawing.strokes.len(), drawing.segment_count());
+            format!("{strokes} strokes of {pieces} pieces, {} solid regions", drawing.fills.len())
+        });
+        self.draw(|debug| debug.on_drawing(drawing))
+    }
+}

@@ -1,0 +1,203 @@
+//! Raster formats: decoded, turned upright and laid over white.
+
+use super::{LoadOptions, Scan, jpeg, resolution, tiff, undecodable};
+use crate::error::Result;
+use crate::raster::Raster;
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel, Rgb, RgbImage};
+use std::io::Cursor;
+
+/// Spread between channels, of 1, up to which an image still counts as grey: what JPEG makes of a grey original.
+const COLOR_THRESHOLD: f32 = 8.5 / 255.0;
+
+/// Rec. 709 luma of the stored values.
+const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
+/// Decodes a raster image.
+///
+/// # Errors
+/// [`Error::Decode`] and [`Error::TooLarge`].
+pub(super) fn load(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Scan> {
+    let format = format_of(name, bytes)?;
+    let Decoded { mut image, orientation, dpi } = match format {
+        ImageFormat::Tiff => tiff::decode(name, bytes, options)?,
+        _ => decode(name, bytes, format, options)?,
+    };
+    image.apply_orientation(orientation);
+    Ok(scan(&image, options.dpi.or(dpi)))
+}
+
+/// An image as stored, and how it is to be seen.
+pub(super) struct Decoded {
+    /// The samples as stored.
+    pub image: DynamicImage,
+    /// What turns it upright.
+    pub orientation: Orientation,
+    /// Dots per inch, where the file says.
+    pub dpi: Option<f64>,
+}
+
+fn format_of(name: &str, bytes: &[u8]) -> Result<ImageFormat> {
+    const SUPPORTED: &str = "PNG, JPEG, TIFF, WebP, BMP, GIF, PNM and SVG are";
+    if let Some(other) = foreign_format(bytes) {
+        return Err(undecodable(name, format!("{other} is not supported ({SUPPORTED})")));
+    }
+    let format = image::guess_format(bytes)
+        .map_err(|_| undecodable(name, format!("this is not an image in a known format ({SUPPORTED})")))?;
+    if !format.reading_enabled() {
+        return Err(undecodable(name, format!("{} is not supported ({SUPPORTED})", format.to_mime_type())));
+    }
+    Ok(format)
+}
+
+/// The name of a format that drawings come in and that is not read here.
+fn foreign_format(bytes: &[u8]) -> Option<&'static str> {
+    let brand = bytes.get(4..12).unwrap_or_default();
+    match brand {
+        b"ftypheic" | b"ftypheix" | b"ftypmif1" => return Some("HEIC"),
+        b"ftypavif" => return Some("AVIF"),
+        _ => {}
+    }
+    let starts: [(&[u8], &str); 6] = [
+        (b"%PDF", "PDF"),
+        (b"%!PS", "PostScript"),
+        (b"8BPS", "PSD"),
+        (b"\xFF\x0A", "JPEG XL"),
+        (b"\0\0\0\x0CJXL ", "JPEG XL"),
+        (b"\0\0\0\x0CjP  ", "JPEG 2000"),
+    ];
+    starts.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|&(_, name)| name)
+}
+
+fn decode(name: &str, bytes: &[u8], format: ImageFormat, options: &LoadOptions) -> Result<Decoded> {
+    let damaged = |e: image::ImageError| undecodable(name, e);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    // Dimensions have their own check below; this bounds what a decoder allocates on the way to them.
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(options.max_pixels.saturating_mul(16).saturating_add(1 << 20));
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(damaged)?;
+    let (width, height) = decoder.dimensions();
+    options.check_size(name, width.into(), height.into())?;
+    if format == ImageFormat::Jpeg && !jpeg::markers(bytes).complete {
+        return Err(undecodable(name, "the JPEG is cut short: it has no end marker"));
+    }
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let exif = decoder.exif_metadata().ok().flatten();
+    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
+    Ok(Decoded { image, orientation, dpi: resolution::dpi(format, bytes, exif.as_deref()) })
+}
+
+/// A sample of any type as a fraction of its range.
+trait Unit: Copy {
+    fn unit(self) -> f32;
+}
+
+impl Unit for u8 {
+    fn unit(self) -> f32 {
+        f32::from(self) / 255.0
+    }
+}
+
+impl Unit for u16 {
+    fn unit(self) -> f32 {
+        f32::from(self) / 65535.0
+    }
+}
+
+impl Unit for f32 {
+    fn unit(self) -> f32 {
+        if self.is_nan() { 1.0 } else { self.clamp(0.0, 1.0) }
+    }
+}
+
+/// Lightness and, where there is any, colour of an upright image.
+pub(super) fn scan(image: &DynamicImage, dpi: Option<f64>) -> Scan {
+    match image {
+        DynamicImage::ImageLuma8(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageLumaA8(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageRgb8(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageRgba8(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageLuma16(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageLumaA16(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageRgb16(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageRgba16(b) => scan_buffer(b, dpi),
+        DynamicImage::ImageRgb32F(b) => scan_buffer(b, dpi),
+        other => scan_buffer(&other.to_rgba32f(), dpi),
+    }
+}
+
+fn scan_buffer<P: Pixel<Subpixel: Unit>>(image: &ImageBuffer<P, Vec<P::Subpixel>>, dpi: Option<f64>) -> Scan {
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let gray = image.pixels().map(|p| luma(over_white(p))).collect();
+    let gray = Raster::from_vec(width, height, gray).expect("one sample for each pixel");
+    let colored = P::CHANNEL_COUNT >= 3 && image.pixels().any(|p| spread(over_white(p)) > COLOR_THRESHOLD);
+    let byte = |v: f32| (v * 255.0).round() as u8;
+    let rgb = colored.then(|| {
+        RgbImage::from_fn(image.width(), image.height(), |x, y| Rgb(over_white(image.get_pixel(x, y)).map(byte)))
+    });
+    Scan { gray, rgb, dpi }
+}
+
+/// Red, green and blue in `[0, 1]` of a pixel in front of white.
+fn over_white<P: Pixel<Subpixel: Unit>>(pixel: &P) -> [f32; 3] {
+    let (color, alpha) = match *pixel.channels() {
+        [l] => ([l.unit(); 3], 1.0),
+        [l, a] => ([l.unit(); 3], a.unit()),
+        [r, g, b] => ([r.unit(), g.unit(), b.unit()], 1.0),
+        [r, g, b, a] => ([r.unit(), g.unit(), b.unit()], a.unit()),
+        _ => ([1.0; 3], 1.0),
+    };
+    if alpha == 1.0 { color } else { color.map(|c| c * alpha + (1.0 - alpha)) }
+}
+
+/// Lightness; exact for greys.
+fn luma([r, g, b]: [f32; 3]) -> f32 {
+    if r == g && g == b { r } else { LUMA[0] * r + LUMA[1] * g + LUMA[2] * b }
+}
+
+fn spread([r, g, b]: [f32; 3]) -> f32 {
+    r.max(g).max(b) - r.min(g).min(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+    use image::{Luma, LumaA, Rgba};
+
+    #[test]
+    fn alpha_lies_over_white() {
+        assert_eq!(luma(over_white(&LumaA([0u8, 0]))), 1.0);
+        assert_eq!(luma(over_white(&LumaA([0u8, 255]))), 0.0);
+        assert!((luma(over_white(&Rgba([0u8, 0, 0, 51]))) - 0.8).abs() < 1e-6);
+    }
+
+    #[test]
+    fn greys_are_exact_in_every_depth() {
+        for v in 0..=255u8 {
+            assert_eq!(luma(over_white(&Rgb([v; 3]))), f32::from(v) / 255.0);
+        }
+        assert_eq!(luma(over_white(&Luma([12345u16]))), 12345.0 / 65535.0);
+        assert_eq!(luma(over_white(&Rgb([0.25f32; 3]))), 0.25);
+        assert_eq!(luma(over_white(&Rgb([f32::NAN; 3]))), 1.0);
+    }
+
+    #[test]
+    fn colour_is_kept_only_where_there_is_some() {
+        let nearly_grey = DynamicImage::ImageRgb8(RgbImage::from_pixel(2, 2, Rgb([100, 104, 108])));
+        assert!(scan(&nearly_grey, None).rgb.is_none());
+        let mut red = RgbImage::from_pixel(2, 2, Rgb([255; 3]));
+        red.put_pixel(1, 0, Rgb([255, 0, 0]));
+        let got = scan(&DynamicImage::ImageRgb8(red.clone()), Some(300.0));
+        assert_eq!((got.rgb, got.dpi), (Some(red), Some(300.0)));
+        assert!((got.gray[(1, 0)] - LUMA[0]).abs() < 1e-6);
+    }
+
+    #[test]
+    fn other_formats_are_named() {
+        let error = format_of("plan.pdf", b"%PDF-1.7 ...").unwrap_err();
+        assert!(error.to_string().starts_with("plan.pdf: PDF is not supported"), "{error}");
+        assert!(matches!(format_of("x", b"hello world"), Err(Error::Decode { .. })));
+    }
+}

@@ -1,0 +1,243 @@
+//! The SVG text, read back by another library, is the drawing.
+
+use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
+use fieldtrace::write::{SvgOptions, to_svg};
+use kurbo::{Arc, Circle, CubicBez, Line, PathEl, Point, Rect, Shape, Vec2};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+use usvg::tiny_skia_path::PathSegment;
+
+fn stroke(centreline: Centreline, width: f64) -> Stroke {
+    Stroke { centreline, width, color: Color::BLACK }
+}
+
+fn chain(segments: Vec<Segment>, closed: bool) -> Centreline {
+    Centreline::Path { segments, closed }
+}
+
+fn svg(drawing: &Drawing) -> String {
+    to_svg(drawing, &SvgOptions::default())
+}
+
+/// The stroked paths of an SVG: width and points along it.
+fn read_back(text: &str) -> Vec<(f64, Vec<Point>)> {
+    let tree = usvg::Tree::from_str(text, &usvg::Options::default()).expect("valid SVG");
+    let mut found = Vec::new();
+    collect(tree.root(), &mut found);
+    found
+}
+
+fn collect(group: &usvg::Group, found: &mut Vec<(f64, Vec<Point>)>) {
+    for node in group.children() {
+        match node {
+            usvg::Node::Group(group) => collect(group, found),
+            usvg::Node::Path(path) => {
+                if let Some(stroke) = path.stroke() {
+                    assert_eq!(stroke.linecap(), usvg::LineCap::Round);
+                    assert_eq!(stroke.linejoin(), usvg::LineJoin::Round);
+                    assert!(path.fill().is_none());
+                    found.push((f64::from(stroke.width().get()), points_along(path)));
+                }
+            }
+            _ => panic!("only paths are written"),
+        }
+    }
+}
+
+fn points_along(path: &usvg::Path) -> Vec<Point> {
+    let p = |q: usvg::tiny_skia_path::Point| Point::new(f64::from(q.x), f64::from(q.y));
+    let elements = path.data().segments().map(|s| match s {
+        PathSegment::MoveTo(a) => PathEl::MoveTo(p(a)),
+        PathSegment::LineTo(a) => PathEl::LineTo(p(a)),
+        PathSegment::QuadTo(a, b) => PathEl::QuadTo(p(a), p(b)),
+        PathSegment::CubicTo(a, b, c) => PathEl::CurveTo(p(a), p(b), p(c)),
+        PathSegment::Close => PathEl::ClosePath,
+    });
+    sampled(&elements.collect())
+}
+
+fn sampled(path: &kurbo::BezPath) -> Vec<Point> {
+    let mut points = Vec::new();
+    kurbo::flatten(path, 1e-3, |e| match e {
+        PathEl::MoveTo(p) => points.push(p),
+        PathEl::LineTo(p) => {
+            let from = *points.last().unwrap();
+            let steps = (p - from).hypot().ceil().max(1.0);
+            points.extend((1..=steps as usize).map(|i| from.lerp(p, i as f64 / steps)));
+        }
+        _ => {
+            let (from, to) = (*points.last().unwrap(), points[0]);
+            points.extend((1..=200).map(|i| from.lerp(to, f64::from(i) / 200.0)));
+        }
+    });
+    points
+}
+
+/// The largest distance from a point of one set to the chain through the other.
+fn farthest(from: &[Point], to: &[Point]) -> f64 {
+    let near = |p: &Point| {
+        let to_piece = |w: &[Point]| {
+            let d = w[1] - w[0];
+            let t = if d.hypot2() > 0.0 { ((*p - w[0]).dot(d) / d.hypot2()).clamp(0.0, 1.0) } else { 0.0 };
+            (*p - (w[0] + d * t)).hypot()
+        };
+        to.windows(2).map(to_piece).fold(f64::INFINITY, f64::min)
+    };
+    from.iter().map(near).fold(0.0, f64::max)
+}
+
+fn point() -> impl Strategy<Value = Point> {
+    (-20.0..220.0f64, -20.0..220.0f64).prop_map(Point::from)
+}
+
+fn arc_segment() -> impl Strategy<Value = Centreline> {
+    (point(), 0.3..150.0f64, -PI..PI, -2.0 * PI..2.0 * PI).prop_map(|(center, r, start, sweep)| {
+        chain(vec![Segment::Arc(Arc::new(center, (r, r), start, sweep, 0.0))], false)
+    })
+}
+
+/// Lines and cubics through random points, open or closed.
+fn polycurve() -> impl Strategy<Value = Centreline> {
+    (prop::collection::vec((point(), point(), point(), any::<bool>()), 2..6), any::<bool>()).prop_map(
+        |(steps, closed)| {
+            let count = if closed { steps.len() } else { steps.len() - 1 };
+            let segment = |i: usize| {
+                let (p, a, b, straight) = steps[i];
+                let q = steps[(i + 1) % steps.len()].0;
+                if straight { Segment::Line(Line::new(p, q)) } else { Segment::Cubic(CubicBez::new(p, a, b, q)) }
+            };
+            chain((0..count).map(segment).collect(), closed)
+        },
+    )
+}
+
+/// A line, an arc that continues it and a line again.
+fn rounded() -> impl Strategy<Value = Centreline> {
+    (point(), 0.5..40.0f64, -PI..PI, -2.0 * PI..2.0 * PI).prop_map(|(center, r, start, sweep)| {
+        let arc = Arc::new(center, (r, r), start, sweep, 0.0);
+        let at = |angle: f64| center + r * Vec2::from_angle(angle);
+        let along = |angle: f64| Vec2::from_angle(angle + 0.5 * PI) * 20.0 * sweep.signum();
+        let before = Line::new(at(start) - along(start), at(start));
+        let after = Line::new(at(start + sweep), at(start + sweep) + along(start + sweep));
+        chain(vec![Segment::Line(before), Segment::Arc(arc), Segment::Line(after)], false)
+    })
+}
+
+fn centreline() -> impl Strategy<Value = Centreline> {
+    prop_oneof![
+        2 => polycurve(),
+        2 => arc_segment(),
+        2 => rounded(),
+        1 => (point(), 0.5..100.0f64).prop_map(|(c, r)| Centreline::Circle(Circle::new(c, r))),
+        1 => point().prop_map(Centreline::Dot),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_text_holds_the_geometry(lines in prop::collection::vec(centreline(), 1..8), precision in 1usize..5) {
+        let mut drawing = Drawing::new(200.0, 200.0);
+        // Widths tell the strokes apart, since the order changes.
+        drawing.strokes = lines.into_iter().enumerate().map(|(i, c)| stroke(c, 0.5 * (i + 1) as f64)).collect();
+        let text = to_svg(&drawing, &SvgOptions { precision, title: None });
+        prop_assert_eq!(&text, &to_svg(&drawing, &SvgOptions { precision, title: None }));
+        prop_assert!(!text.contains("NaN") && !text.contains("inf") && !text.contains("\"-0\""));
+        let back = read_back(&text);
+        prop_assert_eq!(back.len(), drawing.strokes.len());
+        // Rounding moves an end by up to 0.71 of a step, and what hangs on both ends by up to three times
+        // that; the rest is the reader, which turns arcs into cubics (3e-4 of a radius off).
+        let tolerance = 2.2 * 0.1f64.powi(precision as i32) + 0.05;
+        for stroke in &drawing.strokes {
+            let (_, points) = back.iter().find(|(w, _)| (w - stroke.width).abs() < 1e-3).expect("the width");
+            let truth = sampled(&stroke.centreline.to_path());
+            let (out, home) = (farthest(&truth, points), farthest(points, &truth));
+            prop_assert!(out < tolerance && home < tolerance, "{} {} in {}", out, home, text);
+        }
+    }
+}
+
+#[test]
+fn plain_shapes_are_written_as_such() {
+    let mut drawing = Drawing::new(100.0, 50.0);
+    let line = Segment::Line(Line::new((1.0, 2.0), (90.0, 40.5)));
+    drawing.strokes.push(stroke(chain(vec![line], false), 1.257));
+    drawing.strokes.push(stroke(Centreline::Circle(Circle::new((50.0, 25.0), 10.126)), 2.0));
+    drawing.strokes.push(stroke(Centreline::Dot(Point::new(70.0, 8.0)), 3.0));
+    let text = svg(&drawing);
+    for part in [
+        r#"<line stroke-width="1.26" x1="1" x2="90" y1="2" y2="40.5"/>"#,
+        r#"<circle cx="50" cy="25" r="10.13" stroke-width="2"/>"#,
+        r#"<path d="M70 8h0.01" stroke-width="3"/>"#,
+        r#"viewBox="0 0 100 50""#,
+        r#"width="100""#,
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+#[test]
+fn a_known_dpi_gives_millimetres() {
+    let drawing = Drawing { dpi: Some(300.0), ..Drawing::new(2480.0, 3508.0) };
+    let text = svg(&drawing);
+    assert!(text.contains(r#"width="209.9733mm""#) && text.contains(r#"height="297.0107mm""#), "{text}");
+    assert!(text.contains(r#"viewBox="0 0 2480 3508""#), "{text}");
+}
+
+#[test]
+fn each_pen_is_a_layer_and_regions_come_first() {
+    let mut drawing = Drawing::new(100.0, 100.0);
+    let red = Color([200, 0, 16]);
+    drawing.strokes.push(stroke(Centreline::Circle(Circle::new((50.0, 50.0), 10.0)), 1.0));
+    drawing.strokes.push(Stroke { color: red, ..stroke(Centreline::Dot(Point::new(5.0, 5.0)), 1.0) });
+    drawing.fills.push(Fill { outline: Rect::new(10.0, 10.0, 20.0, 20.5).to_path(0.1), color: red });
+    let text = svg(&drawing);
+    assert_eq!(text.matches("inkscape:groupmode=\"layer\"").count(), 2);
+    assert!(text.contains("xmlns:inkscape=") && text.contains("inkscape:label=\"Pen #c80010\""), "{text}");
+    let fill = text.find(r##"<path d="M10 10H20V20.5H10Z" fill="#c80010" fill-rule="evenodd" stroke="none"/>"##);
+    let (fill, dot) = (fill.expect("the region"), text.find("h0.01").expect("the dot"));
+    let (red, black) = (text.find("Pen #c80010").unwrap(), text.find("Pen #000000").unwrap());
+    assert!(red < fill && fill < dot && dot < black, "{text}");
+    assert_eq!(read_back(&text).len(), 2);
+}
+
+#[test]
+fn an_empty_drawing_is_valid() {
+    let title = Some("a <b> & \"c\"\u{1}\n".to_string());
+    let text = to_svg(&Drawing::new(7.0, 9.0), &SvgOptions { title, ..SvgOptions::default() });
+    assert!(read_back(&text).is_empty());
+    assert!(text.contains("a &lt;b&gt; &amp;") && text.contains(env!("CARGO_PKG_VERSION")), "{text}");
+}
+
+#[test]
+fn values_that_are_not_finite_never_appear() {
+    let mut drawing = Drawing::new(50.0, 50.0);
+    let nan = f64::NAN;
+    drawing.strokes.push(stroke(chain(vec![Segment::Line(Line::new((nan, 1.0), (2.0, 3.0)))], false), 1.0));
+    drawing
+        .strokes
+        .push(stroke(chain(vec![Segment::Arc(Arc::new((1.0, 1.0), (2.0, 2.0), nan, 1.0, 0.0))], false), 1.0));
+    drawing.strokes.push(stroke(Centreline::Dot(Point::new(f64::INFINITY, 0.0)), 1.0));
+    drawing.strokes.push(stroke(Centreline::Dot(Point::new(4.0, 4.0)), nan));
+    drawing.strokes.push(stroke(Centreline::Dot(Point::new(4.0, 8.0)), -1.0));
+    drawing.strokes.push(stroke(chain(Vec::new(), false), 1.0));
+    let text = svg(&drawing);
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    assert_eq!(read_back(&text).len(), 2, "{text}");
+}
+
+#[test]
+fn a_stroke_is_walked_from_the_end_that_is_nearer() {
+    let mut drawing = Drawing::new(50.0, 50.0);
+    drawing.strokes.push(stroke(chain(vec![Segment::Line(Line::new((40.0, 40.0), (2.0, 3.0)))], false), 1.0));
+    assert!(svg(&drawing).contains(r#"x1="2" x2="40" y1="3" y2="40""#));
+}
+
+#[test]
+fn title_is_the_first_child() {
+    let options = SvgOptions { title: Some("bird.png".into()), ..SvgOptions::default() };
+    let text = to_svg(&Drawing::new(5.0, 5.0), &options);
+    let second = text.lines().nth(1).unwrap_or_default();
+    assert_eq!(second, "<title>bird.png</title>", "{text}");
+}
