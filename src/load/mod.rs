@@ -4,6 +4,7 @@
 //! stored, and it has at least one pixel and at most [`LoadOptions::max_pixels`].
 
 mod bitmap;
+mod group3;
 mod jpeg;
 mod resolution;
 pub mod svg;

@@ -5,7 +5,7 @@
 //! which are decoded as if they were grey to get at their indices.
 
 use super::bitmap::Decoded;
-use super::{LoadOptions, resolution, undecodable};
+use super::{LoadOptions, group3, resolution, undecodable};
 use crate::error::Result;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageBuffer, Luma, Rgb, Rgba};
@@ -14,6 +14,9 @@ use std::io::Cursor;
 use tiff::decoder::{Decoder, DecodingResult, Limits, ifd::Value};
 use tiff::tags::{CompressionMethod, PhotometricInterpretation, Tag};
 use tiff::{ColorType, TiffError, TiffResult};
+
+/// The tag that tells one-dimensional from two-dimensional group 3 coding.
+const T4_OPTIONS: u16 = 292;
 
 type Reader<'a> = Decoder<Cursor<&'a [u8]>>;
 
@@ -31,9 +34,28 @@ pub(super) fn decode(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<
     let palette = palette(&mut reader).map_err(damaged)?;
     let mended = mend(bytes, &mut reader, palette.is_some()).map_err(damaged)?;
     let mut reader = open(&mended, options).map_err(damaged)?;
-    let samples = Samples::read(&mut reader).map_err(damaged)?;
-    let image = samples.image(palette.as_deref()).map_err(|reason| undecodable(name, reason))?;
+    let image = if unsigned(&mut reader, Tag::Compression) == Some(u32::from(CompressionMethod::Fax3.to_u16())) {
+        let strips = strips(&mut reader, &mended).map_err(damaged)?;
+        group3::decode(&strips, width, height).map(DynamicImage::from)
+    } else {
+        Samples::read(&mut reader).map_err(damaged)?.image(palette.as_deref())
+    };
+    let image = image.map_err(|reason| undecodable(name, reason))?;
     Ok(Decoded { image, orientation: orientation.unwrap_or(Orientation::NoTransforms), dpi })
+}
+
+/// The data of a CCITT group 3 page, which the decoder does not know.
+fn strips<'a>(reader: &mut Reader, bytes: &'a [u8]) -> TiffResult<group3::Strips<'a>> {
+    let ranges =
+        reader.get_tag_u64_vec(Tag::StripOffsets)?.into_iter().zip(reader.get_tag_u64_vec(Tag::StripByteCounts)?);
+    let clip = |at: u64| usize::try_from(at).unwrap_or(usize::MAX).min(bytes.len());
+    let white_is_zero = u32::from(PhotometricInterpretation::WhiteIsZero.to_u16());
+    Ok(group3::Strips {
+        data: ranges.map(|(at, count)| &bytes[clip(at)..clip(at.saturating_add(count))]).collect(),
+        rows: unsigned(reader, Tag::RowsPerStrip).unwrap_or(u32::MAX),
+        two_dimensional: unsigned(reader, Tag::Unknown(T4_OPTIONS)).unwrap_or(0) & 1 == 1,
+        white_is_zero: unsigned(reader, Tag::PhotometricInterpretation) == Some(white_is_zero),
+    })
 }
 
 /// A decoder at the first page that is not a thumbnail.

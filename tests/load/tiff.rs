@@ -58,6 +58,28 @@ fn ccitt_group_4_in_both_interpretations_and_bit_orders() {
     assert_eq!(gray(&bilevel(4, 1, None, &fax())), negative, "as stored: white on black");
 }
 
+/// CCITT group 3 data of 8 x 2 pixels: 3 white, 2 black, 3 white; 8 black. Without an end of page, as libtiff has it.
+fn group3() -> Vec<u8> {
+    let end_of_line = "000000000001";
+    let (first, second) = (["1000", "11", "1000"].concat(), ["00110101", "000101"].concat());
+    let bits = [end_of_line, &first, end_of_line, &second].concat();
+    let byte = |c: &[u8]| c.iter().enumerate().fold(0, |b, (i, &v)| b | (v - b'0') << (7 - i));
+    bits.as_bytes().chunks(8).map(byte).collect()
+}
+
+#[test]
+fn ccitt_group_3_in_both_interpretations_and_bit_orders() {
+    let rows = |photometric, order: u16, data: &[u8]| {
+        let mut fields = page(8, 2, &[1], 3, photometric);
+        fields.push((266, short(order)));
+        gray(&tiff(true, &fields, data))
+    };
+    let expected = [1., 1., 1., 0., 0., 1., 1., 1., 0., 0., 0., 0., 0., 0., 0., 0.];
+    assert_eq!(rows(0, 1, &group3()), expected);
+    assert_eq!(rows(0, 2, &reversed(&group3())), expected);
+    assert_eq!(rows(1, 1, &group3()), expected.map(|v| 1.0 - v));
+}
+
 #[test]
 fn grey_of_every_depth_in_both_byte_orders() {
     for big in [false, true] {
@@ -176,8 +198,12 @@ fn what_is_not_supported_is_named() {
     let reason = |fields: &[(u16, Field)]| {
         load_bytes("a.tif", &tiff(false, fields, &[0; 64]), &LoadOptions::default()).unwrap_err().to_string()
     };
-    let group3 = reason(&page(8, 8, &[1], 3, 0));
-    assert!(group3.starts_with("a.tif: ") && group3.contains("Fax3"), "{group3}");
+    let huffman = reason(&page(8, 8, &[1], 2, 0));
+    assert!(huffman.starts_with("a.tif: ") && huffman.contains("Huffman"), "{huffman}");
+    let mut fields = page(8, 8, &[1], 3, 0);
+    fields.push((292, Field::Long(vec![1])));
+    assert!(reason(&fields).contains("two-dimensional"), "{}", reason(&fields));
+    assert!(reason(&page(8, 8, &[1], 3, 0)).contains("rows"), "zeros are no rows");
     let lab = reason(&page(2, 2, &[8; 3], 1, 9));
     assert!(lab.starts_with("a.tif: ") && lab.contains("Lab"), "{lab}");
 }
