@@ -1,17 +1,72 @@
 //! From trails to strokes.
-use crate::drawing::*;
-/// Fits every trail.
-pub fn fit(
-    image: &crate::clean::LineImage,
-    graph: &crate::graph::StrokeGraph,
-    _options: &crate::options::Options,
-) -> crate::drawing::Drawing {
-    let mut d = crate::drawing::Drawing::new(image.ink.width() as f64, image.ink.height() as f64);
-    for t in &graph.trails {
-        let w = graph.walk(t);
-        let segments: Vec<Segment> = w.windows(2).map(|p| Segment::Line(kurbo::Line::new(p[0].point, p[1].point))).collect();
-        if segments.is_empty() { continue; }
-        d.strokes.push(Stroke { centreline: Centreline::Path { segments, closed: t.closed }, width: image.line_width, color: Color::BLACK });
+//!
+//! A trail is split at its corners. Each section becomes the chain of lines, arcs and cubics that explains its
+//! points best at the least cost (`segmentation`); then joints are made sharp or smooth, lines that nearly keep
+//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`).
+
+mod arc;
+mod cubic;
+mod joints;
+mod line;
+mod samples;
+mod segmentation;
+mod solid;
+mod stroke;
+
+use crate::clean::LineImage;
+use crate::drawing::{Centreline, Color, Drawing, Stroke};
+use crate::graph::StrokeGraph;
+use crate::options::{Options, StrokeWidth};
+use rayon::prelude::*;
+
+/// How closely to fit, in pixels of the line image.
+#[derive(Clone, Copy, Debug)]
+struct Tolerance {
+    /// Deviation that is accepted as the drawing's own unsteadiness.
+    fit: f64,
+    /// Line width, which sets the scale of features.
+    width: f64,
+}
+
+/// Fits every trail of a graph. The drawing is in pixels of the line image.
+pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing {
+    let tolerance = Tolerance { fit: (options.detail * image.line_width).max(0.1), width: image.line_width };
+    let mut drawing = Drawing::new(image.ink.width() as f64, image.ink.height() as f64);
+    let fitted: Vec<Option<(Centreline, f64)>> = graph
+        .trails
+        .par_iter()
+        .map(|trail| {
+            let walk = graph.walk(trail);
+            let centreline = stroke::fit_trail(&walk, trail.closed, tolerance)?;
+            Some((centreline, median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width)))
+        })
+        .collect();
+    let lines = fitted.into_iter().flatten().map(|(centreline, width)| Stroke { centreline, width, color: Color::BLACK });
+    let dots = graph.dots.iter().map(|&(centre, diameter)| Stroke {
+        centreline: Centreline::Dot(centre),
+        width: diameter,
+        color: Color::BLACK,
+    });
+    drawing.strokes = lines.chain(dots).collect();
+    set_widths(&mut drawing, options.width, image.scale);
+    drawing.fills = image.solids.iter().map(|s| solid::smooth(s, tolerance)).collect();
+    drawing
+}
+
+/// Replaces measured widths where one width is asked for.
+fn set_widths(drawing: &mut Drawing, width: StrokeWidth, scale: f64) {
+    let all = match width {
+        StrokeWidth::Measured => return,
+        StrokeWidth::Uniform => median_width(drawing.strokes.iter().map(|s| s.width)),
+        StrokeWidth::Fixed(px) => Some(px * scale),
+    };
+    if let Some(all) = all {
+        drawing.strokes.iter_mut().for_each(|s| s.width = all);
     }
-    d
+}
+
+fn median_width(widths: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut widths: Vec<f64> = widths.filter(|w| w.is_finite()).collect();
+    widths.sort_by(f64::total_cmp);
+    widths.get(widths.len() / 2).copied()
 }

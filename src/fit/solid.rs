@@ -1,0 +1,42 @@
+//! Outlines of solid regions.
+
+use super::Tolerance;
+use super::joints::join;
+use super::samples::Samples;
+use super::segmentation::segment;
+use crate::drawing::Fill;
+use kurbo::{BezPath, PathEl, Point};
+
+/// A traced outline as smooth curves and sharp corners.
+pub(super) fn smooth(fill: &Fill, tolerance: Tolerance) -> Fill {
+    let mut outline = BezPath::new();
+    for ring in rings(&fill.outline) {
+        let mut points = ring.clone();
+        points.push(ring[0]);
+        let weights = vec![1.0; points.len()];
+        let samples = Samples::new(points, weights);
+        if samples.len() < 6 {
+            continue;
+        }
+        let pieces = segment(&samples, tolerance);
+        let segments = join(&samples, &pieces, true, [None, None], tolerance);
+        outline.move_to(segments[0].start());
+        segments.iter().for_each(|s| s.append_to(&mut outline));
+        outline.close_path();
+    }
+    Fill { outline, color: fill.color }
+}
+
+/// The closed polygons of a path of straight pieces.
+fn rings(path: &BezPath) -> Vec<Vec<Point>> {
+    let mut rings: Vec<Vec<Point>> = Vec::new();
+    for el in path.elements() {
+        match *el {
+            PathEl::MoveTo(p) => rings.push(vec![p]),
+            PathEl::LineTo(p) => rings.last_mut().into_iter().for_each(|r| r.push(p)),
+            _ => {}
+        }
+    }
+    rings.retain(|r| r.len() > 2);
+    rings
+}
