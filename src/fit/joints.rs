@@ -90,7 +90,7 @@ fn draft(samples: &Samples, piece: Piece, tolerance: Tolerance) -> Draft {
                 return Draft { piece, start, end, start_tangent, end_tangent, on_line: start };
             }
             let ends = Ends { start, end, start_tangent: None, end_tangent: None };
-            let (start_tangent, end_tangent) = tangents(&fit_cubic(samples, from, to, &ends, 3).curve);
+            let (start_tangent, end_tangent) = tangents(&fit_cubic(samples, from, to, &ends, 6).curve);
             Draft { piece, start, end, start_tangent, end_tangent, on_line: start }
         }
     }
@@ -196,7 +196,7 @@ fn segments(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance:
 
 fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
     let ends = Ends { start: from.point, end: to.point, start_tangent: from.tangent, end_tangent: to.tangent };
-    Segment::Cubic(fit_cubic(samples, piece.from, piece.to, &ends, 4).curve)
+    Segment::Cubic(fit_cubic(samples, piece.from, piece.to, &ends, 8).curve)
 }
 
 /// The arc between two joints, if it keeps to their tangents and to the samples.

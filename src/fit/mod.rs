@@ -41,7 +41,8 @@ pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing
             Some((centreline, median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width)))
         })
         .collect();
-    let lines = fitted.into_iter().flatten().map(|(centreline, width)| Stroke { centreline, width, color: Color::BLACK });
+    let lines =
+        fitted.into_iter().flatten().map(|(centreline, width)| Stroke { centreline, width, color: Color::BLACK });
     let dots = graph.dots.iter().map(|&(centre, diameter)| Stroke {
         centreline: Centreline::Dot(centre),
         width: diameter,

@@ -39,7 +39,7 @@ pub(super) struct Piece {
 /// The cheapest chain of pieces over all samples. Needs at least two samples.
 pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
     let knots = knots(samples, tolerance);
-    let deviation = (0.5 * tolerance.fit).max(1.2 * samples.scatter(tolerance.width));
+    let deviation = (0.25 * tolerance.fit).max(samples.scatter(0.7 * tolerance.width));
     let mut cost = vec![f64::INFINITY; knots.len()];
     let mut best: Vec<Option<(usize, Kind)>> = vec![None; knots.len()];
     cost[0] = 0.0;
@@ -107,7 +107,7 @@ fn cheapest(samples: &Samples, from: usize, to: usize, tolerance: Tolerance, dev
         return cheapest;
     }
     let ends = Ends { start: near(samples, from), end: near(samples, to), start_tangent: None, end_tangent: None };
-    let cubic = price(CUBIC, fit_cubic(samples, from, to, &ends, 1).error);
+    let cubic = price(CUBIC, fit_cubic(samples, from, to, &ends, 2).error);
     if cubic < cheapest.0 { (cubic, Kind::Cubic) } else { cheapest }
 }
 

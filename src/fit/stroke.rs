@@ -79,10 +79,7 @@ fn open(walk: &[TrailPoint], corners: &[usize], tolerance: Tolerance) -> Vec<Seg
     let mut bounds = vec![0];
     bounds.extend_from_slice(corners);
     bounds.push(walk.len() - 1);
-    let mut sections: Vec<Vec<Segment>> = bounds
-        .windows(2)
-        .map(|b| section(&walk[b[0]..=b[1]], tolerance))
-        .collect();
+    let mut sections: Vec<Vec<Segment>> = bounds.windows(2).map(|b| section(&walk[b[0]..=b[1]], tolerance)).collect();
     for k in 1..sections.len() {
         let (before, after) = sections.split_at_mut(k);
         let (a, b) = (before[k - 1].last_mut(), after[0].first_mut());

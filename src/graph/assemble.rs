@@ -124,13 +124,14 @@ impl<'a> Assembly<'a> {
     fn is_known(&self, found: &[(Place, Place, Point)], a: Place, b: Place, point: Point) -> bool {
         let width = self.image.line_width;
         let again = found.iter().rev().any(|(c, d, _)| {
-            c.line == a.line && d.line == b.line && (c.at - a.at).abs() * STEP < 6.0 * width && (d.at - b.at).abs() * STEP < 6.0 * width
+            c.line == a.line
+                && d.line == b.line
+                && (c.at - a.at).abs() * STEP < 6.0 * width
+                && (d.at - b.at).abs() * STEP < 6.0 * width
         });
         again
             || self.nodes.iter().any(|n| {
-                let has = |line: usize| {
-                    n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line)
-                };
+                let has = |line: usize| n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line);
                 (n.position - point).hypot() < 1.2 * width && has(a.line) && has(b.line)
             })
     }
@@ -156,7 +157,9 @@ impl<'a> Assembly<'a> {
             cuts.sort_by(|a, b| a.at.total_cmp(&b.at));
         }
         let pieces = cuts.windows(2);
-        pieces.map(|pair| self.out.graph.add_edge(pair[0].node, pair[1].node, self.edge(&line, pair[0], pair[1]))).collect()
+        pieces
+            .map(|pair| self.out.graph.add_edge(pair[0].node, pair[1].node, self.edge(&line, pair[0], pair[1])))
+            .collect()
     }
 
     fn edge(&self, line: &Streamline, from: Cut, to: Cut) -> Edge {
@@ -215,9 +218,11 @@ impl<'a> Assembly<'a> {
         let mut trails = std::mem::take(&mut self.out.trails);
         trails.retain(|trail| {
             let length: f64 = trail.edges.iter().map(|(e, _)| length(&graph[*e].points)).sum();
-            let free = trail.edges.iter().filter_map(|(e, _)| graph.edge_endpoints(*e)).any(|(a, b)| {
-                [a, b].iter().any(|&n| graph[n].kind == JunctionKind::FreeEnd)
-            });
+            let free = trail
+                .edges
+                .iter()
+                .filter_map(|(e, _)| graph.edge_endpoints(*e))
+                .any(|(a, b)| [a, b].iter().any(|&n| graph[n].kind == JunctionKind::FreeEnd));
             let keep = length >= least || !free;
             if !keep {
                 trail.edges.iter().for_each(|(e, _)| drop(graph.remove_edge(*e)));

@@ -80,9 +80,12 @@ impl StrokeGraph {
             let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
                 continue;
             };
-            let points = e.points.iter().zip(&e.widths).map(|(&point, &width)| TrailPoint { point, width, corner: false });
+            let points =
+                e.points.iter().zip(&e.widths).map(|(&point, &width)| TrailPoint { point, width, corner: false });
             let mut piece: Vec<TrailPoint> = points.collect();
-            let corner = |node: petgraph::graph::NodeIndex| matches!(self.graph[node].kind, JunctionKind::Corner | JunctionKind::Branch);
+            let corner = |node: petgraph::graph::NodeIndex| {
+                matches!(self.graph[node].kind, JunctionKind::Corner | JunctionKind::Branch)
+            };
             if let [first, .., last] = piece.as_mut_slice() {
                 (first.corner, last.corner) = (corner(a), corner(b));
             }

@@ -109,7 +109,9 @@ impl Solver<'_> {
                 Touch::End(_) => None,
             });
             let Some((_, place)) = to_body.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-            let near = |other: &Place| other.line == place.line && (other.at - place.at).abs() * STEP < 4.0 * self.image.line_width;
+            let near = |other: &Place| {
+                other.line == place.line && (other.at - place.at).abs() * STEP < 4.0 * self.image.line_width
+            };
             let ends_here = ends.iter().any(|&other| {
                 let n = self.lines[self.end(other).line].points.len() as f64;
                 let at = if self.end(other).side == 0 { 0.0 } else { n - 1.0 };

@@ -86,7 +86,8 @@ impl<'a> Walker<'a> {
         // The walk back starts on the forward walk's first points, so that its heading has a memory.
         let memory = (MEMORY * self.width / STEP) as usize;
         let reversed = forward.iter().take(memory).rev();
-        let past: Vec<Step> = reversed.map(|s| Step { point: s.point, heading: -s.heading, width: s.width, drift: 0.0 }).collect();
+        let past: Vec<Step> =
+            reversed.map(|s| Step { point: s.point, heading: -s.heading, width: s.width, drift: 0.0 }).collect();
         let known = past.len();
         let (backward, backward_stop, _) = self.walk(past, -1);
         let mut steps: Vec<Step> = backward.into_iter().skip(known).rev().collect();
