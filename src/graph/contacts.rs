@@ -230,9 +230,12 @@ impl Finder<'_> {
         if place.line != end.line {
             return false;
         }
-        let n = self.lines[end.line].points.len() as f64;
-        let from_end = if end.side == 0 { place.at } else { n - 1.0 - place.at };
-        from_end * STEP < OWN * end.width
+        let last = (self.lines[end.line].points.len() - 1) as f64;
+        let (from_end, tip) = match end.side {
+            0 => (place.at, end.tip as f64),
+            _ => (last - place.at, last - end.tip as f64),
+        };
+        (from_end - tip) * STEP < OWN * end.width
     }
 
     /// Whether an end stops at the line that it crosses `beyond` pixels before its last point.
