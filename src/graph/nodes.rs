@@ -181,7 +181,7 @@ impl Solver<'_> {
         if end.stop == Stop::Border {
             return end.point;
         }
-        let steps = ((end.width + 0.75) / 0.125) as usize;
+        let steps = ((end.width + 1.5) / 0.125) as usize;
         let along = |k: usize| -end.width + 0.125 * k as f64;
         let is_paper = |s: f64| self.image.ink.sample(end.point + heading * s) < 0.5;
         let edge = (0..steps).map(along).find(|&s| is_paper(s)).unwrap_or(0.0);
