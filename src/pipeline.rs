@@ -108,7 +108,7 @@ impl Vectorizer {
                 streamlines.push(streamline);
             }
         }
-        let mut graph = graph::build(image, &frames, &streamlines, &self.options);
+        let mut graph = graph::build(image, &streamlines, &self.options);
         observer.on_graph(image, &mut graph)?;
         let mut drawing = fit::fit(image, &graph, &self.options).scaled(1.0 / image.scale);
         (drawing.width, drawing.height) = (scan.gray.width() as f64, scan.gray.height() as f64);

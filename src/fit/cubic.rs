@@ -152,9 +152,8 @@ fn eliminate(mut m: [[f64; 5]; 4]) -> [f64; 4] {
         m.swap(i, pivot);
         for r in i + 1..4 {
             let f = m[r][i] / m[i][i];
-            for c in i..5 {
-                m[r][c] -= f * m[i][c];
-            }
+            let above = m[i];
+            m[r].iter_mut().zip(above).skip(i).for_each(|(v, a)| *v -= f * a);
         }
     }
     let mut x = [0.0; 4];

@@ -59,8 +59,8 @@ pub(super) fn join(
         };
         joints.push(joint);
     }
-    for k in 0..n {
-        align_tangents(&drafts[k], k, n, closed, &mut joints);
+    for (k, draft) in drafts.iter().enumerate() {
+        align_tangents(draft, k, n, closed, &mut joints);
     }
     drafts.iter().enumerate().flat_map(|(k, d)| segments(samples, d, joints[k], joints[k + 1], tolerance)).collect()
 }

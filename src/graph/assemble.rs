@@ -43,6 +43,9 @@ pub(super) fn assemble(
     assembly.out
 }
 
+/// A crossing of two lines.
+type Meeting = (Place, Place, Point);
+
 struct Assembly<'a> {
     image: &'a LineImage,
     nodes: &'a [Node],
@@ -97,7 +100,7 @@ impl<'a> Assembly<'a> {
         let nodes = RTree::bulk_load(
             places.map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i)).collect::<Vec<_>>(),
         );
-        let mut found: BTreeMap<(usize, usize), Vec<(Place, Place, Point)>> = BTreeMap::new();
+        let mut found: BTreeMap<(usize, usize), Vec<Meeting>> = BTreeMap::new();
         for (i, line) in lines.iter().enumerate() {
             for k in 0..piece_count(line) {
                 let piece = Line::new(line.points[k], line.points[(k + 1) % line.points.len()]);
@@ -132,7 +135,7 @@ impl<'a> Assembly<'a> {
     }
 
     /// Whether a pair of lines crosses again right after a crossing: lines that graze each other.
-    fn is_again(&self, known: &[(Place, Place, Point)], a: Place, b: Place) -> bool {
+    fn is_again(&self, known: &[Meeting], a: Place, b: Place) -> bool {
         let near = |p: Place, q: Place| (p.at - q.at).abs() * STEP < 6.0 * self.image.line_width;
         known.iter().rev().any(|(c, d, _)| near(*c, a) && near(*d, b))
     }

@@ -323,13 +323,13 @@ impl Finder<'_> {
         if overlap_a.max(overlap_b) >= OVERLAP * self.image.line_width || !parallel {
             return None;
         }
-        let towards_end = if b.end % 2 == 0 { -1.0 } else { 1.0 };
+        let towards_end = if b.end.is_multiple_of(2) { -1.0 } else { 1.0 };
         Some(point_at(&self.lines[on_b.line], on_b.at + towards_end * 0.5 * overlap_b / STEP))
     }
 
     /// Length of a line from a place to one of its ends, in pixels.
     fn to_end(&self, place: Place, end: usize) -> f64 {
         let last = (self.lines[place.line].points.len() - 1) as f64;
-        STEP * if end % 2 == 0 { place.at } else { last - place.at }
+        STEP * if end.is_multiple_of(2) { place.at } else { last - place.at }
     }
 }

@@ -12,7 +12,6 @@ mod nodes;
 mod rejoin;
 
 use crate::clean::LineImage;
-use crate::field::FrameField;
 use crate::options::Options;
 use crate::streamline::Streamline;
 use kurbo::Point;
@@ -112,8 +111,7 @@ pub(crate) struct TrailPoint {
 }
 
 /// Builds the stroke graph.
-pub fn build(image: &LineImage, frames: &FrameField, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
-    let _ = frames;
+pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
     let (dots, mut lines) = ends::split_dots(image, streamlines);
     let mut resolved = Resolved::new(image, &lines);
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);

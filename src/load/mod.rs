@@ -52,7 +52,7 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { max_pixels: 200_000_000, dpi: None, size: None }
+        Self { max_pixels: 64_000_000, dpi: None, size: None }
     }
 }
 

@@ -20,10 +20,10 @@ pub(super) fn relax(image: &LineImage, line: &mut Streamline, width: f64) {
     for _ in 0..ROUNDS {
         let moved: Vec<(Vec2, f64)> = (0..n).map(|k| correction(image, line, k, width)).collect();
         let shifts: Vec<Vec2> = moved.iter().map(|m| m.0).collect();
-        for k in 0..n {
+        for (k, &(_, measured)) in moved.iter().enumerate() {
             // The mean of neighbours' corrections: the middle of the ink is smoother than its pixels.
             line.points[k] += smoothed(&shifts, k, line.closed);
-            line.widths[k] = if line.widths[k].is_nan() && moved[k].1.is_nan() { f64::NAN } else { moved[k].1 };
+            line.widths[k] = measured;
         }
     }
 }
