@@ -42,6 +42,19 @@ pub fn strokes_apart(a: &Drawing, b: &Drawing) -> Apart {
     apart(&lines(a), &lines(b))
 }
 
+/// How far a trace is from the lines that were drawn, when the truth's last `margin` pixels before each open end
+/// may be missing: where a line ends is a question of its own.
+pub fn body_apart(truth: &Drawing, traced: &Drawing, margin: f64) -> Apart {
+    let (mut from, to) = (sampled(&lines(truth)), sampled(&lines(traced)));
+    let ends = ends_of(truth);
+    for chain in &mut from {
+        chain.retain(|p| ends.iter().all(|end| p.distance(*end) > margin));
+    }
+    let missing = distances(&from, &to).into_iter().fold(0.0, f64::max);
+    let added = distances(&to, &sampled(&lines(truth))).into_iter().fold(0.0, f64::max);
+    Apart { max: missing.max(added), ..strokes_apart(truth, traced) }
+}
+
 /// The largest distance from a point of the first set to the second.
 pub fn farthest(from: &[BezPath], to: &[BezPath]) -> f64 {
     distances(&sampled(from), &sampled(to)).into_iter().fold(0.0, f64::max)
