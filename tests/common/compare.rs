@@ -2,6 +2,8 @@
 
 use fieldtrace::drawing::{Centreline, Drawing, Segment};
 use kurbo::{Affine, BezPath, ParamCurve, ParamCurveArclen, Point};
+use rstar::primitives::Line;
+use rstar::{PointDistance, RTree};
 
 /// Distance between samples along a line, in pixels.
 const SPACING: f64 = 0.25;
@@ -76,19 +78,19 @@ fn sampled(paths: &[BezPath]) -> Vec<Vec<Point>> {
 /// Distance of each point of some chains to the nearest of the other chains.
 fn distances(from: &[Vec<Point>], to: &[Vec<Point>]) -> Vec<f64> {
     let pieces = |chain: &Vec<Point>| match chain[..] {
-        [one] => vec![(one, one)],
-        _ => chain.windows(2).map(|p| (p[0], p[1])).collect(),
+        [one] => vec![piece(one, one)],
+        _ => chain.windows(2).map(|p| piece(p[0], p[1])).collect(),
     };
-    let pieces: Vec<(Point, Point)> = to.iter().flat_map(pieces).collect();
-    let near = |p: &Point| pieces.iter().map(|piece| squared_distance(*p, *piece)).fold(f64::INFINITY, f64::min);
-    from.iter().flatten().map(|p| near(p).sqrt()).collect()
+    let pieces = RTree::bulk_load(to.iter().flat_map(pieces).collect());
+    let near = |p: &Point| {
+        let nearest = pieces.nearest_neighbor(&[p.x, p.y]);
+        nearest.map_or(f64::INFINITY, |piece| piece.distance_2(&[p.x, p.y]).sqrt())
+    };
+    from.iter().flatten().map(near).collect()
 }
 
-fn squared_distance(p: Point, (a, b): (Point, Point)) -> f64 {
-    let along = b - a;
-    let length = along.hypot2();
-    let t = if length > 0.0 { ((p - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (p - (a + along * t)).hypot2()
+fn piece(a: Point, b: Point) -> Line<[f64; 2]> {
+    Line::new([a.x, a.y], [b.x, b.y])
 }
 
 /// The largest distance from a drawing's free ends to the nearest of the true ends, and the other way.
