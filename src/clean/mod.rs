@@ -16,6 +16,7 @@ use crate::raster::{Mask, Raster};
 use image::{ImageBuffer, Luma};
 use imageproc::distance_transform::euclidean_squared_distance_transform;
 use imageproc::filter::gaussian_blur_f32;
+use kurbo::Point;
 
 /// The ink of a drawing, evenly lit and at a size that the later stages know.
 #[derive(Clone, Debug)]
@@ -34,6 +35,28 @@ pub struct LineImage {
     pub noise: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
+}
+
+/// On a clean render, lines that touch show no gap longer than this, in pixels.
+const CLEAN_GAP: f64 = 0.15;
+/// On a noisy scan, a pencil line's ink may drop to this share before it counts as broken.
+const BROKEN: f32 = 0.3;
+
+impl LineImage {
+    /// Whether the ink runs from one point to another without a break.
+    ///
+    /// On a clean render the ink that is missing along the way adds up to the length of the gap, however it
+    /// lies on the pixels.
+    pub(crate) fn is_inked(&self, a: Point, b: Point) -> bool {
+        let length = (b - a).hypot();
+        let count = (length / 0.25).ceil().max(1.0) as usize;
+        let along = (0..=count).map(|k| self.ink.sample(a.lerp(b, k as f64 / count as f64)));
+        if self.noise > 0.0 {
+            return along.min_by(f32::total_cmp).is_none_or(|least| least > BROKEN);
+        }
+        let missing: f64 = along.map(|ink| 1.0 - f64::from(ink)).sum();
+        missing * length / count as f64 <= CLEAN_GAP
+    }
 }
 
 /// Cleans a scan.

@@ -220,7 +220,7 @@ impl Finder<'_> {
         let points = &self.lines[end.line].points;
         let heading = (points[last] - points[before]).normalize();
         let mut length = 0.0;
-        while length < most && self.image.ink.sample(end.point + heading * (length + 0.25)) > 0.5 {
+        while length < most && self.image.is_inked(end.point, end.point + heading * (length + 0.25)) {
             length += 0.25;
         }
         length
@@ -230,9 +230,12 @@ impl Finder<'_> {
         if place.line != end.line {
             return false;
         }
-        let n = self.lines[end.line].points.len() as f64;
-        let from_end = if end.side == 0 { place.at } else { n - 1.0 - place.at };
-        from_end * STEP < OWN * end.width
+        let last = (self.lines[end.line].points.len() - 1) as f64;
+        let (from_end, tip) = match end.side {
+            0 => (place.at, end.tip as f64),
+            _ => (last - place.at, last - end.tip as f64),
+        };
+        (from_end - tip) * STEP < OWN * end.width
     }
 
     /// Whether an end stops at the line that it crosses `beyond` pixels before its last point.
@@ -279,7 +282,7 @@ impl Finder<'_> {
         let reach = if end.stop == Stop::Merged { 0.75 } else { 0.9 } * self.image.line_width.max(1.5);
         let from = end.point;
         for (place, foot, distance) in self.index.near(from, reach) {
-            if self.is_own_neighbourhood(end, place) || !self.is_inked(from, foot) {
+            if self.is_own_neighbourhood(end, place) || !self.image.is_inked(from, foot) {
                 continue;
             }
             let touch = match self.end_near(place, 0.8 * self.image.line_width) {
@@ -319,12 +322,5 @@ impl Finder<'_> {
     fn to_end(&self, place: Place, end: usize) -> f64 {
         let last = (self.lines[place.line].points.len() - 1) as f64;
         STEP * if end % 2 == 0 { place.at } else { last - place.at }
-    }
-
-    /// Whether there is ink all the way between two points.
-    fn is_inked(&self, a: Point, b: Point) -> bool {
-        let least = if self.image.noise > 0.0 { 0.3 } else { 0.5 };
-        let count = ((b - a).hypot() / 0.5).ceil() as usize;
-        (0..=count).all(|k| self.image.ink.sample(a.lerp(b, k as f64 / count.max(1) as f64)) > least)
     }
 }

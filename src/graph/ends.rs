@@ -8,6 +8,8 @@ use kurbo::{Point, Vec2};
 const TAIL: f64 = 5.0;
 /// How much of a line right before a junction is left out of that, in line widths.
 const BLUR: f64 = 0.4;
+/// The same where a line was cut because it had taken the wrong arm.
+const CUT_BLUR: f64 = 2.0;
 
 /// One end of a line.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +52,12 @@ fn end(image: &LineImage, lines: &[Streamline], line: usize, side: usize) -> Opt
     let width = median_width(streamline, index, image.line_width);
     let tip = (0..n).find(|&k| streamline.widths[index(k)].is_finite()).unwrap_or(n / 2);
     let overrun = tip as f64 * STEP;
-    let skip = if overrun > 0.3 * width { (BLUR * width / STEP) as usize } else { 0 };
+    let blur = match streamline.stops[side] {
+        Stop::Cut => CUT_BLUR,
+        _ if overrun > 0.3 * width => BLUR,
+        _ => 0.0,
+    };
+    let skip = (blur * width / STEP) as usize;
     let length = ((TAIL * width / STEP) as usize).max(3);
     let from = (tip + skip).min(n.saturating_sub(3));
     let run: Vec<Point> = (from..(from + length).min(n))

@@ -9,6 +9,7 @@ mod assemble;
 mod contacts;
 mod ends;
 mod nodes;
+mod rejoin;
 
 use crate::clean::LineImage;
 use crate::field::FrameField;
@@ -113,11 +114,29 @@ pub(crate) struct TrailPoint {
 /// Builds the stroke graph.
 pub fn build(image: &LineImage, frames: &FrameField, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
     let _ = frames;
-    let (dots, lines) = ends::split_dots(image, streamlines);
-    let ends = ends::ends(image, &lines);
-    let contacts = contacts::contacts(image, &lines, &ends);
-    let resolved = nodes::resolve(image, &lines, &ends, &contacts);
-    let mut graph = assemble::assemble(image, &lines, &ends, &resolved, options);
+    let (dots, mut lines) = ends::split_dots(image, streamlines);
+    let mut resolved = Resolved::new(image, &lines);
+    let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
+    if !cuts.is_empty() {
+        lines = rejoin::cut_lines(&lines, &cuts);
+        resolved = Resolved::new(image, &lines);
+    }
+    let mut graph = assemble::assemble(image, &lines, &resolved.ends, &resolved.nodes, options);
     graph.dots = dots;
     graph
+}
+
+/// Lines with their ends resolved.
+struct Resolved {
+    ends: Vec<Option<ends::End>>,
+    nodes: Vec<nodes::Node>,
+}
+
+impl Resolved {
+    fn new(image: &LineImage, lines: &[Streamline]) -> Self {
+        let ends = ends::ends(image, lines);
+        let contacts = contacts::contacts(image, lines, &ends);
+        let nodes = nodes::resolve(image, lines, &ends, &contacts);
+        Self { ends, nodes }
+    }
 }

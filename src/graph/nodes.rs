@@ -3,7 +3,7 @@
 use super::contacts::{Contact, Place, Touch, direction, point_at};
 use super::ends::{End, end_id};
 use crate::clean::LineImage;
-use crate::streamline::{STEP, Stop, Streamline, angle_between};
+use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
 
@@ -23,6 +23,9 @@ pub(super) struct Pair {
     /// How far the stroke turns, radians.
     pub turn: f64,
 }
+
+/// A jump in curvature counts as the turn that it makes over this many line widths.
+const CURVATURE_SPAN: f64 = 3.0;
 
 /// A node at which at least one line ends.
 #[derive(Clone, Debug)]
@@ -131,8 +134,13 @@ impl Solver<'_> {
         } else {
             contacts.iter().map(|c| c.point).collect()
         };
+        if let ([end], [body]) = (ends, bodies)
+            && self.end(*end).stop == Stop::Merged
+        {
+            return self.merge_point(self.end(*end), *body);
+        }
         let centre = mean(&observed);
-        let mut arms: Vec<(Point, Vec2)> = ends.iter().map(|&e| self.arm_line(self.end(e), centre)).collect();
+        let mut arms: Vec<(Point, Vec2)> = ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
         for &body in bodies {
             arms.push((point_at(&self.lines[body.line], body.at), direction(self.lines, body)));
         }
@@ -146,14 +154,22 @@ impl Solver<'_> {
         if good { solved } else { centre }
     }
 
-    /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
-    fn arm_line(&self, end: &End, towards: Point) -> (Point, Vec2) {
+    /// Where a line that runs into another at a small angle meets it: its course is followed until it crosses or
+    /// comes nearest.
+    fn merge_point(&self, end: &End, body: Place) -> Point {
+        let (foot, d) = (point_at(&self.lines[body.line], body.at), direction(self.lines, body));
         let tail = end.tail;
+        let across = Vec2::new(-d.y, d.x);
         let normal = Vec2::new(-tail.heading.y, tail.heading.x);
-        let s = (towards - tail.point).dot(tail.heading).clamp(0.0, 4.0 * end.width);
-        let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
-        let d = tail.heading + normal * (tail.curvature * s);
-        (point, d.normalize())
+        // Distance from the body along the tail's parabola: c + b s + a s^2.
+        let c = (tail.point - foot).dot(across);
+        let (b, a) = (tail.heading.dot(across), 0.5 * tail.curvature * normal.dot(across));
+        let disc = b * b - 4.0 * a * c;
+        let s = if disc < 0.0 { -b / (2.0 * a) } else { -2.0 * c / (b + b.signum() * disc.sqrt()) };
+        let reach = 6.0 * self.image.line_width;
+        let s = if s.is_finite() { s.clamp(0.0, reach) } else { 0.0 };
+        let p = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
+        nearest_on(&self.lines[body.line], body, p, reach)
     }
 
     /// The end of the pen's path: half a line width short of the end of the ink.
@@ -165,7 +181,7 @@ impl Solver<'_> {
         if end.stop == Stop::Border {
             return end.point;
         }
-        let steps = ((end.width + 0.75) / 0.125) as usize;
+        let steps = ((end.width + 1.5) / 0.125) as usize;
         let along = |k: usize| -end.width + 0.125 * k as f64;
         let is_paper = |s: f64| self.image.ink.sample(end.point + heading * s) < 0.5;
         let edge = (0..steps).map(along).find(|&s| is_paper(s)).unwrap_or(0.0);
@@ -206,12 +222,39 @@ impl Solver<'_> {
         pairs
     }
 
-    /// How far a stroke turns that comes in by one end and leaves by another, radians.
+    /// The cost of a stroke that comes in by one end and leaves by another.
     fn turn(&self, a: usize, b: usize, at: Point) -> f64 {
-        let (_, into) = self.arm_line(self.end(a), at);
-        let (_, out) = self.arm_line(self.end(b), at);
-        angle_between(into, -out).abs()
+        continuation(&self.end(a).tail, &self.end(b).tail, at, self.image.line_width)
     }
+}
+
+/// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
+fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
+    let normal = Vec2::new(-tail.heading.y, tail.heading.x);
+    let s = (towards - tail.point).dot(tail.heading).clamp(0.0, 5.0 * line_width);
+    let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
+    let d = tail.heading + normal * (tail.curvature * s);
+    (point, d.normalize())
+}
+
+/// How badly one arm of a node continues another, both heading into it, in radians: the turn between them, and
+/// the jump in curvature over a couple of line widths.
+pub(super) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f64 {
+    let (_, into) = arm_line(a, at, line_width);
+    let (_, out) = arm_line(b, at, line_width);
+    let jump = (CURVATURE_SPAN * line_width * (a.curvature + b.curvature)).abs().min(0.25);
+    angle_between(into, -out).abs() + jump
+}
+
+/// The point of a line nearest to `p`, among those within `reach` pixels along it from a place.
+fn nearest_on(line: &Streamline, place: Place, p: Point, reach: f64) -> Point {
+    let n = line.points.len() as i64;
+    let (at, span) = (place.at.round() as i64, (reach / STEP) as i64);
+    let indices = (at - span..=at + span).filter_map(|k| {
+        let k = if line.closed { k.rem_euclid(n) } else { k };
+        (0..n).contains(&k).then_some(line.points[k.clamp(0, n - 1) as usize])
+    });
+    indices.min_by(|a, b| (*a - p).hypot2().total_cmp(&(*b - p).hypot2())).unwrap_or(p)
 }
 
 fn mean(points: &[Point]) -> Point {

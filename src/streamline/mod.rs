@@ -28,6 +28,8 @@ pub enum Stop {
     Merged,
     /// The line left the image.
     Border,
+    /// It was cut at a junction because it had taken another line's arm.
+    Cut,
 }
 
 /// A traced centreline: points about half a pixel apart.

@@ -27,10 +27,10 @@ const COVERED: f64 = 0.35;
 /// How far to coast along covered ink in the hope of coming out on its other side, in line widths.
 const COAST_COVERED: f64 = 8.0;
 
-/// A line has ended where its middle has lost this share of its ink: on a clean render a gap of a fraction of a
-/// pixel tells; on a scan the grain must be allowed for.
-const END_CLEAN: f32 = 0.8;
+/// On a noisy line, the middle has ended where it has lost this share of its ink.
 const END_NOISY: f32 = 0.5;
+/// How far around a point a clean line must be whole, in pixels.
+const WHOLE: f64 = 1.0;
 
 /// A walk's last point that sat on a single line, and what came after it.
 struct Step {
@@ -171,11 +171,11 @@ impl<'a> Walker<'a> {
         let heading = self.next_heading(steps, coasting);
         let mut point = here.point + heading * STEP;
         let normal = Vec2::new(-heading.y, heading.x);
-        let end = if self.image.noise > 0.0 { END_NOISY } else { END_CLEAN };
-        let inked = [0.0].iter().any(|k| {
-            let aside = point + normal * (k * self.width);
-            self.image.ink.sample(aside) >= end * self.core
-        });
+        let inked = if self.image.noise > 0.0 {
+            self.image.ink.sample(point) >= END_NOISY * self.core
+        } else {
+            self.image.is_inked(point - heading * WHOLE, point + heading * WHOLE)
+        };
         let Some(profile) = self.profile(point, normal).filter(|_| inked) else {
             return self.across_break(here.point, heading);
         };

@@ -1,0 +1,94 @@
+//! Lines that took the wrong arm are cut.
+//!
+//! Where two lines run into one at a small angle, the walk that comes first goes on along either. Once the other
+//! arm is known, the three are compared: when the stem continues one side of the body better than the body's
+//! other side does, the body is cut there, and its parts are paired anew with the stem.
+
+use super::contacts::Place;
+use super::ends::End;
+use super::nodes::{Node, continuation};
+use crate::clean::LineImage;
+use crate::streamline::{STEP, Stop, Streamline, Tail};
+use kurbo::Point;
+
+/// What the stem must gain over the body's own continuation, radians.
+const MARGIN: f64 = 0.1;
+/// A stem that turns by more than this into the body (35 degrees) does not continue it.
+const LARGEST_TURN: f64 = 0.61;
+/// Course of a body beside a node: from this many line widths away, over that many.
+const AWAY: f64 = 2.0;
+const OVER: f64 = 5.0;
+
+/// The places at which bodies should be cut.
+pub(super) fn cuts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], nodes: &[Node]) -> Vec<Place> {
+    nodes.iter().filter_map(|node| cut(image, lines, ends, node)).collect()
+}
+
+fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Node) -> Option<Place> {
+    let [body] = node.bodies[..] else { return None };
+    let sides = [-1, 1].map(|step| side(image, &lines[body.line], body, step));
+    let [Some(back), Some(ahead)] = sides else { return None };
+    let through = continuation(&back, &ahead, node.position, image.line_width);
+    let stems = node.ends.iter().filter_map(|&e| ends[e].as_ref());
+    let best = stems
+        .flat_map(|stem| [back, ahead].map(|side| continuation(&stem.tail, &side, node.position, image.line_width)))
+        .min_by(f64::total_cmp)?;
+    (best + MARGIN < through && best < LARGEST_TURN).then_some(body)
+}
+
+/// The course of a line towards a place, from one side.
+fn side(image: &LineImage, line: &Streamline, place: Place, step: i64) -> Option<Tail> {
+    let n = line.points.len() as i64;
+    let count = |widths: f64| (widths * image.line_width / STEP) as i64;
+    let at = |k: i64| -> Option<Point> {
+        let index = place.at.round() as i64 + step * k;
+        let index = if line.closed { index.rem_euclid(n) } else { index };
+        line.points.get(usize::try_from(index).ok()?).copied()
+    };
+    let run: Vec<Point> = (count(AWAY)..count(AWAY + OVER)).map_while(at).collect();
+    let oldest_first: Vec<Point> = run.into_iter().rev().collect();
+    (oldest_first.len() > 5).then(|| Tail::fit(&oldest_first, 0.1)).flatten()
+}
+
+/// The lines with the given places cut; every part keeps the line's own stops at its outer ends.
+pub(super) fn cut_lines(lines: &[Streamline], places: &[Place]) -> Vec<Streamline> {
+    let mut parts = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let n = line.points.len();
+        let mut at: Vec<usize> =
+            places.iter().filter(|p| p.line == i).map(|p| (p.at.round() as usize).min(n - 1)).collect();
+        at.sort_unstable();
+        at.dedup();
+        if at.is_empty() {
+            parts.push(line.clone());
+        } else if line.closed {
+            let around: Vec<usize> = (0..=n).map(|k| (at[0] + k) % n).collect();
+            let inner: Vec<usize> = at.iter().map(|a| a - at[0]).collect();
+            parts.extend(split(line, &around, &inner, [Stop::Cut; 2]));
+        } else {
+            let all: Vec<usize> = (0..n).collect();
+            parts.extend(split(line, &all, &at, line.stops));
+        }
+    }
+    parts
+}
+
+fn split(line: &Streamline, order: &[usize], at: &[usize], stops: [Stop; 2]) -> Vec<Streamline> {
+    let last = order.len() - 1;
+    let mut bounds: Vec<usize> = at.iter().copied().filter(|&k| k > 0 && k < last).collect();
+    bounds.insert(0, 0);
+    bounds.push(last);
+    let part = |b: &[usize]| {
+        let run = &order[b[0]..=b[1]];
+        Streamline {
+            points: run.iter().map(|&k| line.points[k]).collect(),
+            widths: run.iter().map(|&k| line.widths[k]).collect(),
+            closed: false,
+            stops: [
+                if b[0] == 0 { stops[0] } else { Stop::Cut },
+                if b[1] == last { stops[1] } else { Stop::Cut },
+            ],
+        }
+    };
+    bounds.windows(2).map(part).collect()
+}
