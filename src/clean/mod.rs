@@ -1,5 +1,6 @@
 //! From a scan to the ink that is to be traced: evenly lit, thresholded, despeckled, at a known line width.
 
+mod blur;
 mod paper;
 mod resample;
 mod solids;
@@ -7,6 +8,7 @@ mod specks;
 mod threshold;
 mod width;
 
+pub(crate) use blur::unblurred_width;
 pub(crate) use width::is_ridge;
 
 use crate::drawing::Fill;
@@ -33,6 +35,8 @@ pub struct LineImage {
     pub scale: f64,
     /// Standard deviation of the paper's grain as a share of the ink; 0 for a clean render.
     pub noise: f64,
+    /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render.
+    pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
 }
@@ -69,7 +73,7 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
     let noise = threshold::grain(&ink);
     if noise > 0.0 {
         // Just enough to join the grain of a pencil line: the half-width of a pixel's own footprint.
-        ink = blur(ink, 0.7);
+        ink = smooth(ink, 0.7);
     }
     let (mut ink, mut mask) = threshold::binarise(ink, noise, options.threshold);
     let mut depth = depth(&mask);
@@ -84,7 +88,8 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
     specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
     let solids = solids::take(&mut mask, &ink, &depth, line_width);
     let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
-    LineImage { ink, mask, depth, line_width, scale, noise, solids }
+    let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
+    LineImage { ink, mask, depth, line_width, scale, noise, blur, solids }
 }
 
 /// Lightness with dark lines on light paper.
@@ -127,6 +132,6 @@ fn depth(mask: &Mask) -> Raster<f32> {
 }
 
 /// Gaussian blur.
-fn blur(raster: Raster<f32>, sigma: f32) -> Raster<f32> {
+fn smooth(raster: Raster<f32>, sigma: f32) -> Raster<f32> {
     Raster::from_image(gaussian_blur_f32(&raster.into_image(), sigma))
 }

@@ -1,6 +1,6 @@
 //! The lightness of the paper, which uneven light makes a smooth function of place.
 
-use super::blur;
+use super::smooth;
 use crate::raster::Raster;
 
 /// Side of the cells in which paper is measured, in pixels: several line widths, so that most of a cell is paper.
@@ -24,7 +24,7 @@ pub(super) fn paper_level(light: &Raster<f32>) -> Paper {
         let level = if cells[(x, y)] > SOLID_SHARE * lightest { cells[(x, y)] } else { lightest };
         level * weight[(x, y)]
     });
-    let (weighted, weight) = (blur(weighted, 1.2), blur(weight, 1.2));
+    let (weighted, weight) = (smooth(weighted, 1.2), smooth(weight, 1.2));
     Paper(Raster::from_fn(columns, rows, |x, y| weighted[(x, y)] / weight[(x, y)]))
 }
 

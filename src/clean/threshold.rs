@@ -1,6 +1,6 @@
 //! Ink from paper.
 
-use super::blur;
+use super::smooth;
 use crate::options::Threshold;
 use crate::raster::{Mask, Raster};
 use imageproc::contrast::otsu_level;
@@ -98,7 +98,7 @@ fn nearby_core(ink: &Raster<f32>, floor: f32) -> Raster<f32> {
     let core = Raster::from_fn(ink.width(), ink.height(), |x, y| {
         (f32::from(dilated.get_pixel(x as u32, y as u32)[0]) / 255.0).max(floor)
     });
-    blur(core, 3.0)
+    smooth(core, 3.0)
 }
 
 /// Whether the lines of the page are about equally dark: the lower decile of the cores near ink is over half

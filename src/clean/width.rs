@@ -21,24 +21,34 @@ pub(crate) fn is_ridge(depth: &Raster<f32>, x: usize, y: usize) -> bool {
     around.iter().all(|&(dx, dy)| depth.get(x + dx, y + dy).is_none_or(|d| d <= here))
 }
 
+/// The pixels of the medial ridge, row by row.
+pub(super) fn ridge_pixels(mask: &Mask, depth: &Raster<f32>) -> Vec<(usize, usize)> {
+    let pixels = (0..mask.height()).flat_map(|y| (0..mask.width()).map(move |x| (x, y)));
+    pixels.filter(|&(x, y)| mask[(x, y)] && is_ridge(depth, x, y)).collect()
+}
+
 /// Ink widths at places spread over the ridge, sorted: the narrowest of the cross profiles at each.
 pub(super) fn ridge_widths(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>) -> Vec<f64> {
-    let pixels = (0..mask.height()).flat_map(|y| (0..mask.width()).map(move |x| (x, y)));
-    let ridge: Vec<_> = pixels.filter(|&(x, y)| mask[(x, y)] && is_ridge(depth, x, y)).collect();
-    let mut widths: Vec<f64> = ridge
-        .iter()
-        .step_by((ridge.len() / SAMPLES).max(1))
-        .filter_map(|&(x, y)| narrowest(ink, Point::new(x as f64 + 0.5, y as f64 + 0.5), depth[(x, y)]))
-        .collect();
+    let ridge = ridge_pixels(mask, depth);
+    let sampled = ridge.iter().step_by((ridge.len() / SAMPLES).max(1));
+    let width = |&(x, y): &(usize, usize)| {
+        let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+        Some(narrowest_direction(ink, centre, depth[(x, y)])?.1)
+    };
+    let mut widths: Vec<f64> = sampled.filter_map(width).collect();
     widths.sort_by(f64::total_cmp);
     widths
 }
 
-fn narrowest(ink: &Raster<f32>, p: Point, depth: f32) -> Option<f64> {
+/// The direction in which the ink at a ridge point is narrowest, and its width there.
+pub(super) fn narrowest_direction(ink: &Raster<f32>, p: Point, depth: f32) -> Option<(Vec2, f64)> {
     let reach = 1.5 * f64::from(depth) + 2.0;
     (0..DIRECTIONS)
-        .filter_map(|k| cross_profile(ink, p, Vec2::from_angle(PI * k as f64 / DIRECTIONS as f64), reach)?.width())
-        .min_by(f64::total_cmp)
+        .filter_map(|k| {
+            let direction = Vec2::from_angle(PI * k as f64 / DIRECTIONS as f64);
+            Some((direction, cross_profile(ink, p, direction, reach)?.width()?))
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Typical line width in pixels: the median over the ridge; 1 without ink.

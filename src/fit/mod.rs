@@ -13,7 +13,7 @@ mod segmentation;
 mod solid;
 mod stroke;
 
-use crate::clean::LineImage;
+use crate::clean::{LineImage, unblurred_width};
 use crate::drawing::{Centreline, Color, Drawing, Stroke};
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
@@ -38,7 +38,8 @@ pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing
         .map(|trail| {
             let walk = graph.walk(trail);
             let centreline = stroke::fit_trail(&walk, trail.closed, tolerance)?;
-            Some((centreline, median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width)))
+            let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width);
+            Some((centreline, unblurred_width(measured, image.blur)))
         })
         .collect();
     let lines =

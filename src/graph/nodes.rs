@@ -2,7 +2,7 @@
 
 use super::contacts::{Contact, Place, Touch, direction, point_at};
 use super::ends::{End, end_id};
-use crate::clean::LineImage;
+use crate::clean::{LineImage, unblurred_width};
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
@@ -24,6 +24,8 @@ pub(super) struct Pair {
     pub turn: f64,
 }
 
+/// How far past the last point of a walk its ink may go on, in pixels.
+const LOOK_AHEAD: f64 = 2.5;
 /// A jump in curvature counts as the turn that it makes over this many line widths.
 const CURVATURE_SPAN: f64 = 3.0;
 
@@ -182,13 +184,14 @@ impl Solver<'_> {
         if end.stop == Stop::Border {
             return end.point;
         }
-        let steps = ((end.width + 1.5) / 0.125) as usize;
+        let width = unblurred_width(end.width, self.image.blur);
+        let ink = |s: f64| self.image.ink.sample(end.point + heading * s);
+        let steps = ((end.width + LOOK_AHEAD) / 0.125) as usize;
         let along = |k: usize| -end.width + 0.125 * k as f64;
-        let is_paper = |s: f64| self.image.ink.sample(end.point + heading * s) < 0.5;
-        let edge = (0..steps).map(along).find(|&s| is_paper(s)).unwrap_or(0.0);
+        let edge = (0..steps).map(along).find(|&s| ink(s) < 0.5).unwrap_or_else(|| near_side_of_gap(ink));
         // Never past the middle of a short line.
         let half_length = 0.5 * (n as f64 - 1.0) * STEP;
-        end.point + heading * (edge - 0.5 * end.width).max(-half_length + 0.25)
+        end.point + heading * (edge - 0.5 * width).max(-half_length + 0.25)
     }
 
     /// Two groups are one unless that would fold a short line onto itself.
@@ -227,6 +230,17 @@ impl Solver<'_> {
     fn turn(&self, a: usize, b: usize, at: Point) -> f64 {
         continuation(&self.end(a).tail, &self.end(b).tail, at, self.image.line_width)
     }
+}
+
+/// Where the ink along a line ends when another line lies so near behind it that no paper shows between: half of
+/// the missing ink before the lightest place.
+fn near_side_of_gap(ink: impl Fn(f64) -> f32) -> f64 {
+    let step = 0.125;
+    let along = (0..=20).map(|k| step * f64::from(k));
+    let lightest = along.min_by(|&a, &b| ink(a).total_cmp(&ink(b))).unwrap_or(0.0);
+    let around = (-10..=10).map(|k| lightest + step * f64::from(k));
+    let gap: f64 = around.map(|s| step * f64::from(1.0 - ink(s).min(1.0))).sum();
+    lightest - 0.5 * gap
 }
 
 /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
