@@ -14,6 +14,8 @@ use std::f64::consts::SQRT_2;
 const SAMPLES: usize = 1500;
 /// Half the number of samples of a mean profile; they reach to one and a half line widths.
 const HALF: usize = 24;
+/// Below this share of the peak, a profile tells more of the paper than of the line.
+const FOOT: f64 = 0.15;
 /// Deviations that are tried, in pixels.
 const LEAST: f64 = 0.3;
 const MOST: f64 = 2.5;
@@ -24,7 +26,10 @@ const STEP: f64 = 0.05;
 /// The mean profile of lines of typical width is compared with [`profile_at`]: for each deviation, the width is
 /// the one that gives the measured half-peak width, and the best shape wins.
 pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line_width: f64) -> f64 {
-    let Some(mean) = mean_profile(ink, mask, depth, line_width) else { return 0.0 };
+    let Some(mut mean) = mean_profile(ink, mask, depth, line_width) else { return 0.0 };
+    // Grain darkens the paper a little on average.
+    let paper = mean.iter().copied().fold(f64::MAX, f64::min);
+    mean.iter_mut().for_each(|m| *m -= paper);
     let peak = mean[0].max(1e-9);
     let half = mean.windows(2).position(|w| w[1] < 0.5 * peak);
     let Some(k) = half else { return 0.0 };
@@ -33,7 +38,7 @@ pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line
     let misfit = |blur: f64| -> f64 {
         let width = unblurred_width(measured, blur);
         let top = profile_at(0.0, width, blur);
-        let each = mean.iter().enumerate();
+        let each = mean.iter().enumerate().filter(|(_, m)| **m > FOOT * peak);
         each.map(|(i, m)| (m / peak - profile_at(i as f64 * spacing, width, blur) / top).powi(2)).sum()
     };
     let count = ((MOST - LEAST) / STEP) as usize;

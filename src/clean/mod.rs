@@ -23,7 +23,8 @@ use kurbo::Point;
 /// The ink of a drawing, evenly lit and at a size that the later stages know.
 #[derive(Clone, Debug)]
 pub struct LineImage {
-    /// How much of each pixel is inked, 0 to 1; anti-aliased edges are kept.
+    /// How much of each pixel is inked: 0 on paper, 1 in the middle of a typical line; anti-aliased edges are
+    /// kept. On a scan, the darkest ink has up to 2.
     pub ink: Raster<f32>,
     /// The pixels that count as ink of lines; solid regions are not among them.
     pub mask: Mask,
@@ -41,6 +42,8 @@ pub struct LineImage {
     pub solids: Vec<Fill>,
 }
 
+/// Ink beyond this many times that of a typical line is cut off.
+const DARKEST: f32 = 2.0;
 /// On a clean render, lines that touch show no gap longer than this, in pixels.
 const CLEAN_GAP: f64 = 0.15;
 /// On a noisy scan, a pencil line's ink may drop to this share before it counts as broken.
@@ -89,6 +92,8 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
     let solids = solids::take(&mut mask, &ink, &depth, line_width);
     let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
+    let ink = ink.map(|i| i.min(DARKEST));
+    if std::env::var("DBG").is_ok() { eprintln!("noise {noise:.4} w {line_width:.3} blur {blur:.2} -> {:.3}", unblurred_width(line_width, blur)); }
     LineImage { ink, mask, depth, line_width, scale, noise, blur, solids }
 }
 

@@ -42,7 +42,7 @@ pub(super) fn level(noise: f64) -> f32 {
     if noise > 0.0 { 0.5 } else { 0.4 }
 }
 
-/// Scales the ink so that a line's core is 1 and tells ink from paper.
+/// Scales the ink so that a line's typical core is 1, the darkest more, and tells ink from paper.
 ///
 /// One level serves the whole page when its lines are about equally dark; otherwise each place is measured
 /// against the darkest ink near it, so that light pencil lines hold beside dark ones.
@@ -64,14 +64,14 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold) -> (R
     let ink = if is_even(&ink, &nearby, otsu, core) {
         scaled(ink, core)
     } else {
-        Raster::from_fn(ink.width(), ink.height(), |x, y| (ink[(x, y)] / nearby[(x, y)]).min(1.0))
+        Raster::from_fn(ink.width(), ink.height(), |x, y| ink[(x, y)] / nearby[(x, y)])
     };
     let mask = ink.map(|i| i > level(noise));
     (ink, mask)
 }
 
 fn scaled(ink: Raster<f32>, core: f32) -> Raster<f32> {
-    ink.map(|i| (i / core).min(1.0))
+    ink.map(|i| i / core)
 }
 
 /// Otsu's level and the ink of a line's core (an upper quantile above that level); `None` without ink.

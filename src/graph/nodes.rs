@@ -142,8 +142,7 @@ impl Solver<'_> {
             return self.merge_point(self.end(*end), *body);
         }
         let centre = mean(&observed);
-        let mut arms: Vec<(Point, Vec2)> =
-            ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
+        let mut arms: Vec<(Point, Vec2)> = ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
         for &body in bodies {
             arms.push((point_at(&self.lines[body.line], body.at), direction(self.lines, body)));
         }
