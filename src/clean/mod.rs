@@ -93,7 +93,6 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
     let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
     let ink = ink.map(|i| i.min(DARKEST));
-    if std::env::var("DBG").is_ok() { eprintln!("noise {noise:.4} w {line_width:.3} blur {blur:.2} -> {:.3}", unblurred_width(line_width, blur)); }
     LineImage { ink, mask, depth, line_width, scale, noise, blur, solids }
 }
 

@@ -271,7 +271,7 @@ fn kept(image: &LineImage, line: &Streamline, end: &End, node: &Node) -> usize {
     let n = line.points.len();
     let at = |k: usize| line.points[if end.side == 0 { k } else { n - 1 - k }];
     let is_free = node.ends.len() == 1 && node.bodies.is_empty();
-    if is_free && end.stop == Stop::Border {
+    if is_free && matches!(end.stop, Stop::Border | Stop::Solid) {
         return 1;
     }
     // The place on the last stretch that comes nearest to the node.

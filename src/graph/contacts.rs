@@ -159,7 +159,7 @@ struct Finder<'a> {
 
 impl Finder<'_> {
     fn of_end(&self, end: &End) -> Vec<Contact> {
-        if end.stop == Stop::Border {
+        if matches!(end.stop, Stop::Border | Stop::Solid) {
             return Vec::new();
         }
         let mut contacts = self.crossed(end);

@@ -142,7 +142,8 @@ impl Solver<'_> {
             return self.merge_point(self.end(*end), *body);
         }
         let centre = mean(&observed);
-        let mut arms: Vec<(Point, Vec2)> = ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
+        let mut arms: Vec<(Point, Vec2)> =
+            ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
         for &body in bodies {
             arms.push((point_at(&self.lines[body.line], body.at), direction(self.lines, body)));
         }
@@ -180,7 +181,7 @@ impl Solver<'_> {
         let at = |k: usize| self.lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
         let d = at(0) - at((n - 1).min(3));
         let heading = if d.hypot() > 1e-9 { d.normalize() } else { end.tail.heading };
-        if end.stop == Stop::Border {
+        if matches!(end.stop, Stop::Border | Stop::Solid) {
             return end.point;
         }
         let width = unblurred_width(end.width, self.image.blur);

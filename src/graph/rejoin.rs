@@ -84,10 +84,7 @@ fn split(line: &Streamline, order: &[usize], at: &[usize], stops: [Stop; 2]) -> 
             points: run.iter().map(|&k| line.points[k]).collect(),
             widths: run.iter().map(|&k| line.widths[k]).collect(),
             closed: false,
-            stops: [
-                if b[0] == 0 { stops[0] } else { Stop::Cut },
-                if b[1] == last { stops[1] } else { Stop::Cut },
-            ],
+            stops: [if b[0] == 0 { stops[0] } else { Stop::Cut }, if b[1] == last { stops[1] } else { Stop::Cut }],
         }
     };
     bounds.windows(2).map(part).collect()

@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn an_arc_gives_its_tangent_and_curvature() {
-        for radius in [12.0f64, 30.0, -50.0] {
+        for radius in [20.0f64, 30.0, -50.0] {
             let at = |s: f64| Point::new(radius * (s / radius).sin(), radius * (1.0 - (s / radius).cos()));
             let points: Vec<Point> = (0..20).map(|k| at(0.5 * f64::from(k))).collect();
             let tail = Tail::fit(&points, 0.02).unwrap();

@@ -28,6 +28,8 @@ pub enum Stop {
     Merged,
     /// The line left the image.
     Border,
+    /// The line ran into a solid region.
+    Solid,
     /// It was cut at a junction because it had taken another line's arm.
     Cut,
 }

@@ -113,6 +113,10 @@ impl<'a> Walker<'a> {
             let Some(mut next) = self.advance(&steps, covered_from.is_some()) else {
                 let Some(from) = covered_from else {
                     let stop = self.stop_at(here.point);
+                    if stop == Stop::Solid {
+                        let outside = steps.iter().rposition(|s| !self.is_solid(s.point));
+                        steps.truncate(outside.map_or(known, |k| (k + 2).max(known)));
+                    }
                     return (steps, stop, false);
                 };
                 steps.truncate(from.max(known));
@@ -254,7 +258,16 @@ impl<'a> Walker<'a> {
         let (w, h) = (self.image.mask.width() as f64, self.image.mask.height() as f64);
         let margin = 1.0;
         let inside = p.x > margin && p.y > margin && p.x < w - margin && p.y < h - margin;
-        if inside { Stop::InkEnd } else { Stop::Border }
+        match inside {
+            false => Stop::Border,
+            true if self.is_solid(p) => Stop::Solid,
+            true => Stop::InkEnd,
+        }
+    }
+
+    /// Whether a point lies in a solid region, whose ink is not in the mask of lines.
+    fn is_solid(&self, p: Point) -> bool {
+        self.image.mask.at(p) == Some(false) && self.image.ink.at(p).is_some_and(|ink| ink > 0.6)
     }
 }
 
