@@ -8,16 +8,24 @@ use std::fmt::Debug;
 /// The failures are printed with what was wrong with each; with `-- --nocapture` the share is seen too.
 #[track_caller]
 pub fn sweep<C: Debug + Sync>(name: &str, floor: f64, cases: &[C], rule: impl Fn(&C) -> Result<(), String> + Sync) {
+    require(name, floor, share(name, cases, rule));
+}
+
+/// Requires a share.
+#[track_caller]
+pub fn require(name: &str, floor: f64, share: f64) {
+    assert!(share >= floor, "{name}: {share:.3} of the cases hold, {floor} must");
+}
+
+/// Runs a rule over cases and prints and gives the share of them that keep it.
+pub fn share<C: Debug + Sync>(name: &str, cases: &[C], rule: impl Fn(&C) -> Result<(), String> + Sync) -> f64 {
     let results: Vec<Result<(), String>> = cases.par_iter().map(&rule).collect();
     let passed = results.iter().filter(|r| r.is_ok()).count();
     let share = passed as f64 / cases.len() as f64;
-    println!("{name}: {passed} of {} cases, {share:.3} (floor {floor})", cases.len());
-    for (case, result) in cases.iter().zip(&results) {
-        if let Err(reason) = result {
-            println!("  {case:?}: {reason}");
-        }
-    }
-    assert!(share >= floor, "{name}: {share:.3} of the cases hold, {floor} must");
+    let failed = |(case, result): (&C, &Result<(), String>)| Some(format!("\n  {case:?}: {}", result.as_ref().err()?));
+    let failures: String = cases.iter().zip(&results).filter_map(failed).collect();
+    println!("{name}: {passed} of {} cases, {share:.3}{failures}", cases.len());
+    share
 }
 
 /// An error with a reason unless a condition holds.
