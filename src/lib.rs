@@ -32,7 +32,7 @@
 //! | [`streamline`] | [`streamline::Streamline`]s | points half a pixel apart in the middle of the ink; no ink is covered twice in one direction |
 //! | [`graph`] | [`graph::StrokeGraph`] | every end is free, a corner, a tee or a branch, and every edge belongs to one stroke |
 //! | [`fit`] | [`drawing::Drawing`] | pieces join exactly, smoothly except at corners; lines, arcs and circles where they serve |
-//! | [`write`] | SVG text | rounded, ordered for a short way between strokes, without a date |
+//! | [`mod@write`] | SVG text | rounded, ordered for a short way between strokes, without a date |
 //!
 //! Positions of the stages from `clean` to `fit` are in pixels of the [`clean::LineImage`], which may be of another
 //! size than the scan; the drawing that comes out of [`pipeline::Vectorizer`] is in pixels of the scan. Pixels have x
