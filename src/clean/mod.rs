@@ -42,6 +42,8 @@ pub struct LineImage {
     pub solids: Vec<Fill>,
 }
 
+/// A page whose lightest and darkest pixels are nearer than this is blank.
+const LEAST_CONTRAST: f32 = 0.02;
 /// Ink beyond this many times that of a typical line is cut off.
 const DARKEST: f32 = 2.0;
 /// On a clean render, lines that touch show no gap longer than this, in pixels.
@@ -70,7 +72,7 @@ impl LineImage {
 ///
 /// A scan without ink gives an empty mask and a line width of 1.
 pub fn clean(scan: &Scan, options: &Options) -> LineImage {
-    let light = upright(&scan.gray, options.invert);
+    let light = if has_contrast(&scan.gray) { upright(&scan.gray, options.invert) } else { scan.gray.map(|_| 1.0) };
     let paper = paper::paper_level(&light);
     let mut ink = paper::divide(&light, &paper);
     let noise = threshold::grain(&ink);
@@ -94,6 +96,12 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
     let ink = ink.map(|i| i.min(DARKEST));
     LineImage { ink, mask, depth, line_width, scale, noise, blur, solids }
+}
+
+/// Whether there is anything on the page: a scan of one tone has no ink, whatever the tone.
+fn has_contrast(gray: &Raster<f32>) -> bool {
+    let (low, high) = gray.data().iter().fold((f32::MAX, f32::MIN), |(a, b), &g| (a.min(g), b.max(g)));
+    high - low > LEAST_CONTRAST
 }
 
 /// Lightness with dark lines on light paper.

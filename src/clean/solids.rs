@@ -14,8 +14,12 @@ type Labels = image::ImageBuffer<Luma<u32>, Vec<u32>>;
 /// A region is solid when its half width is this many times that of the lines, plus [`MARGIN`].
 const FACTOR: f64 = 2.2;
 const MARGIN: f64 = 1.5;
-/// A region this many times longer than wide, at an even width, is a broad line.
+/// A region this many times longer than wide is a broad line,
 const ELONGATED: f64 = 5.0;
+/// unless it is more than this many times as wide as the other lines.
+const BROADEST: f64 = 5.0;
+/// Ink beside a solid region that is less than this many squares of the line width is its corner, not a line.
+const CORNER: f64 = 4.0;
 
 /// Takes the solid regions out of the mask and returns their outlines.
 pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line_width: f64) -> Vec<Fill> {
@@ -23,10 +27,11 @@ pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line
     if !depth.data().iter().any(|&d| f64::from(d) > radius) {
         return Vec::new();
     }
-    let region = opened(mask, depth, radius);
+    let mut region = opened(mask, depth, radius);
+    absorb_corners(&mut region, mask, line_width);
     let labels = connected_components(&region.to_gray_image(), Connectivity::Eight, Luma([0u8]));
     let count = labels.iter().copied().max().unwrap_or(0) as usize;
-    let solid = solid_labels(&labels, count, depth);
+    let solid = solid_labels(&labels, count, depth, line_width);
     let boxes = bounding_boxes(&labels, count);
     let fills = (1..=count).filter(|&label| solid[label]).map(|label| {
         let outline = outline(&labels, label as u32, mask, ink, boxes[label]);
@@ -61,8 +66,26 @@ fn opened(mask: &Mask, depth: &Raster<f32>, radius: f64) -> Mask {
     })
 }
 
+/// Sharp corners, which no disc reaches into, go back to their region.
+fn absorb_corners(region: &mut Mask, mask: &Mask, line_width: f64) {
+    let rest = Raster::from_fn(mask.width(), mask.height(), |x, y| mask[(x, y)] && !region[(x, y)]);
+    let labels = connected_components(&rest.to_gray_image(), Connectivity::Eight, Luma([0u8]));
+    let count = labels.iter().copied().max().unwrap_or(0) as usize;
+    let (mut area, mut touches) = (vec![0usize; count + 1], vec![false; count + 1]);
+    for (x, y, label) in labels.enumerate_pixels() {
+        let (x, y, label) = (i64::from(x), i64::from(y), label[0] as usize);
+        area[label] += 1;
+        let near = [(-1, 0), (1, 0), (0, -1), (0, 1)];
+        touches[label] |= near.iter().any(|&(dx, dy)| region.get(x + dx, y + dy) == Some(true));
+    }
+    for (&label, solid) in labels.iter().zip(region.data_mut()) {
+        let l = label as usize;
+        *solid |= l > 0 && touches[l] && (area[l] as f64) < CORNER * line_width * line_width;
+    }
+}
+
 /// Which labels are solid regions rather than broad lines of even width.
-fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>) -> Vec<bool> {
+fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>, line_width: f64) -> Vec<bool> {
     let mut area = vec![0usize; count + 1];
     let mut deepest = vec![0f32; count + 1];
     for (&label, &d) in labels.iter().zip(depth.data()) {
@@ -72,7 +95,7 @@ fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>) -> Vec<bool>
     let mut solid: Vec<bool> = (0..=count)
         .map(|l| {
             let width = 2.0 * f64::from(deepest[l]) - 1.0;
-            (area[l] as f64) < ELONGATED * width * width
+            (area[l] as f64) < ELONGATED * width * width || width > BROADEST * line_width
         })
         .collect();
     solid[0] = false;

@@ -9,6 +9,9 @@ use crate::options::Options;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+use std::collections::BTreeMap;
 
 /// Points nearer to a node than this, in line widths, are inside the junction and do not speak for the line.
 const INSIDE: f64 = 0.75;
@@ -90,19 +93,27 @@ impl<'a> Assembly<'a> {
     fn add_crossings(&mut self) {
         let lines = std::mem::take(&mut self.lines);
         let index = LineIndex::new(&lines);
-        let mut found: Vec<(Place, Place, Point)> = Vec::new();
+        let places = self.nodes.iter().enumerate();
+        let nodes = RTree::bulk_load(
+            places.map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i)).collect::<Vec<_>>(),
+        );
+        let mut found: BTreeMap<(usize, usize), Vec<(Place, Place, Point)>> = BTreeMap::new();
         for (i, line) in lines.iter().enumerate() {
             for k in 0..piece_count(line) {
                 let piece = Line::new(line.points[k], line.points[(k + 1) % line.points.len()]);
                 for (place, point, t) in index.crossings(piece) {
                     let here = Place { line: i, at: k as f64 + t };
-                    if self.is_crossing(&lines, here, place) && !self.is_known(&found, here, place, point) {
-                        found.push((here, place, point));
+                    let known = found.entry((i, place.line)).or_default();
+                    let is_new = self.is_crossing(&lines, here, place)
+                        && !self.is_again(known, here, place)
+                        && !self.is_at_node(&nodes, here, place, point);
+                    if is_new {
+                        known.push((here, place, point));
                     }
                 }
             }
         }
-        for (a, b, position) in found {
+        for (a, b, position) in found.into_values().flatten() {
             let node = self.out.graph.add_node(Junction { position, kind: JunctionKind::Crossing });
             self.cuts[a.line].push(Cut { at: a.at, node });
             self.cuts[b.line].push(Cut { at: b.at, node });
@@ -120,20 +131,20 @@ impl<'a> Assembly<'a> {
         a.at < b.at && apart * STEP > 4.0 * self.image.line_width
     }
 
-    /// Whether the pair already crosses just before, or both lines share a node here.
-    fn is_known(&self, found: &[(Place, Place, Point)], a: Place, b: Place, point: Point) -> bool {
-        let width = self.image.line_width;
-        let again = found.iter().rev().any(|(c, d, _)| {
-            c.line == a.line
-                && d.line == b.line
-                && (c.at - a.at).abs() * STEP < 6.0 * width
-                && (d.at - b.at).abs() * STEP < 6.0 * width
-        });
-        again
-            || self.nodes.iter().any(|n| {
-                let has = |line: usize| n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line);
-                (n.position - point).hypot() < 1.2 * width && has(a.line) && has(b.line)
-            })
+    /// Whether a pair of lines crosses again right after a crossing: lines that graze each other.
+    fn is_again(&self, known: &[(Place, Place, Point)], a: Place, b: Place) -> bool {
+        let near = |p: Place, q: Place| (p.at - q.at).abs() * STEP < 6.0 * self.image.line_width;
+        known.iter().rev().any(|(c, d, _)| near(*c, a) && near(*d, b))
+    }
+
+    /// Whether both lines share a node here.
+    fn is_at_node(&self, nodes: &RTree<GeomWithData<[f64; 2], usize>>, a: Place, b: Place, point: Point) -> bool {
+        let reach = 1.2 * self.image.line_width;
+        nodes.locate_within_distance([point.x, point.y], reach * reach).any(|near| {
+            let n = &self.nodes[near.data];
+            let has = |line: usize| n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line);
+            has(a.line) && has(b.line)
+        })
     }
 
     /// The edges of one line, in order.
@@ -255,7 +266,7 @@ fn trim(
     let (first, last) = (node(0), node(1));
     let n = line.points.len();
     let from = kept(image, line, &a, first);
-    let to = n - 1 - kept(image, line, &b, last);
+    let to = (n - 1).saturating_sub(kept(image, line, &b, last));
     let (mut points, mut widths) = (vec![first.position], vec![f64::NAN]);
     if to >= from {
         points.extend(&line.points[from..=to]);

@@ -297,25 +297,34 @@ impl Finder<'_> {
     /// Two walks from opposite sides that ran into each other's ink, each stopping on the other's body, are one
     /// line: their ends meet in the middle of the stretch that both have covered.
     fn join_overlaps(&self, contacts: &mut [Contact]) {
+        let mut of_end = vec![Vec::new(); self.ends.len()];
+        contacts.iter().enumerate().for_each(|(i, c)| of_end[c.end].push(i));
         for i in 0..contacts.len() {
-            for j in 0..i {
+            let Touch::Body(on_b) = contacts[i].touch else { continue };
+            let others = [0, 1].into_iter().flat_map(|side| &of_end[end_id(on_b.line, side)]);
+            for &j in others.filter(|&&j| j < i) {
                 let (a, b) = (contacts[i], contacts[j]);
                 let (Touch::Body(on_b), Touch::Body(on_a)) = (a.touch, b.touch) else { continue };
-                if on_b.line != b.end / 2 || on_a.line != a.end / 2 || on_a.line == on_b.line {
+                if on_a.line != a.end / 2 || on_a.line == on_b.line {
                     continue;
                 }
-                let (overlap_a, overlap_b) = (self.to_end(on_a, a.end), self.to_end(on_b, b.end));
-                let limit = OVERLAP * self.image.line_width;
-                let (da, db) = (direction(self.lines, on_a), direction(self.lines, on_b));
-                if overlap_a.max(overlap_b) < limit && da.dot(db).abs() > 0.6 {
-                    let towards_end = if b.end % 2 == 0 { -1.0 } else { 1.0 };
-                    let middle = Place { line: on_b.line, at: on_b.at + towards_end * 0.5 * overlap_b / STEP };
-                    let point = point_at(&self.lines[middle.line], middle.at);
+                if let Some(point) = self.middle_of_overlap(&a, on_a, &b, on_b) {
                     contacts[i] = Contact { touch: Touch::End(b.end), point, ..a };
                     contacts[j] = Contact { touch: Touch::End(a.end), point, ..b };
                 }
             }
         }
+    }
+
+    /// The middle of the stretch that two ends have both covered, if they run along each other.
+    fn middle_of_overlap(&self, a: &Contact, on_a: Place, b: &Contact, on_b: Place) -> Option<Point> {
+        let (overlap_a, overlap_b) = (self.to_end(on_a, a.end), self.to_end(on_b, b.end));
+        let parallel = direction(self.lines, on_a).dot(direction(self.lines, on_b)).abs() > 0.6;
+        if overlap_a.max(overlap_b) >= OVERLAP * self.image.line_width || !parallel {
+            return None;
+        }
+        let towards_end = if b.end % 2 == 0 { -1.0 } else { 1.0 };
+        Some(point_at(&self.lines[on_b.line], on_b.at + towards_end * 0.5 * overlap_b / STEP))
     }
 
     /// Length of a line from a place to one of its ends, in pixels.

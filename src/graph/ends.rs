@@ -87,7 +87,8 @@ pub(super) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<
     for streamline in streamlines {
         match dot(image, streamline) {
             Some(dot) => dots.push(dot),
-            None => lines.push(streamline.clone()),
+            None if streamline.points.len() > 1 => lines.push(streamline.clone()),
+            None => {}
         }
     }
     (dots, lines)

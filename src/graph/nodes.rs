@@ -6,6 +6,8 @@ use crate::clean::{LineImage, unblurred_width};
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
 
 /// Nodes nearer to one another than this, in line widths, are one.
 const MERGE: f64 = 0.8;
@@ -48,7 +50,9 @@ pub(super) fn resolve(
     ends: &[Option<End>],
     contacts: &[Contact],
 ) -> Vec<Node> {
-    let solver = Solver { image, lines, ends, contacts };
+    let mut of_end = vec![Vec::new(); ends.len()];
+    contacts.iter().for_each(|c| of_end[c.end].push(*c));
+    let solver = Solver { image, lines, ends, of_end };
     let mut groups = UnionFind::new(ends.len());
     for contact in contacts {
         if let Touch::End(other) = contact.touch {
@@ -57,9 +61,13 @@ pub(super) fn resolve(
     }
     let first: Vec<Node> = solver.nodes(&mut groups);
     // Groups that were solved to the same place are one: stems that meet on a body, a corner beside a tee.
-    for (i, a) in first.iter().enumerate() {
-        for b in &first[..i] {
-            if (a.position - b.position).hypot() < MERGE * image.line_width && solver.may_merge(a, b) {
+    let places = first.iter().enumerate().map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i));
+    let tree = RTree::bulk_load(places.collect());
+    let reach = (MERGE * image.line_width).powi(2);
+    for a in &first {
+        for near in tree.locate_within_distance([a.position.x, a.position.y], reach) {
+            let b = &first[near.data];
+            if b.ends[0] < a.ends[0] && solver.may_merge(a, b) {
                 groups.union(a.ends[0], b.ends[0]);
             }
         }
@@ -75,7 +83,8 @@ struct Solver<'a> {
     image: &'a LineImage,
     lines: &'a [Streamline],
     ends: &'a [Option<End>],
-    contacts: &'a [Contact],
+    /// The contacts of each end.
+    of_end: Vec<Vec<Contact>>,
 }
 
 impl Solver<'_> {
@@ -93,7 +102,7 @@ impl Solver<'_> {
     }
 
     fn node(&self, ends: Vec<usize>) -> Node {
-        let contacts: Vec<&Contact> = self.contacts.iter().filter(|c| ends.contains(&c.end)).collect();
+        let contacts: Vec<&Contact> = ends.iter().flat_map(|&e| &self.of_end[e]).collect();
         let bodies = self.bodies(&ends, &contacts);
         let position = if contacts.is_empty() && ends.len() == 1 {
             self.free_end(self.end(ends[0]))

@@ -22,10 +22,11 @@ pub(super) struct Mark {
 pub(super) struct Coverage {
     cells: Raster<u32>,
     marks: Vec<(Mark, u32)>,
-    forgotten: Vec<bool>,
     painted: Mask,
     mask: Mask,
     line_width: f64,
+    /// Number of ink pixels in all.
+    pub ink_pixels: usize,
 }
 
 const NONE: u32 = u32::MAX;
@@ -37,10 +38,10 @@ impl Coverage {
         Self {
             cells: Raster::filled(cells(mask.width()), cells(mask.height()), NONE),
             marks: Vec::new(),
-            forgotten: Vec::new(),
             painted: mask.map(|_| false),
             mask: mask.clone(),
             line_width,
+            ink_pixels: mask.count(),
         }
     }
 
@@ -54,12 +55,18 @@ impl Coverage {
         }
     }
 
-    /// Points of the streamline with this number no longer count.
-    pub fn forget(&mut self, streamline: u32) {
-        // Numbers are handed out again after a streamline is dropped, so its marks are dead by position.
-        self.forgotten.resize(self.marks.len(), false);
-        for (dead, (mark, _)) in self.forgotten.iter_mut().zip(&self.marks) {
-            *dead |= mark.streamline == streamline;
+    /// How many points there are so far.
+    pub fn len(&self) -> usize {
+        self.marks.len()
+    }
+
+    /// Takes back all points but the first `len`.
+    pub fn truncate(&mut self, len: usize) {
+        while self.marks.len() > len {
+            if let Some((mark, link)) = self.marks.pop() {
+                let cell = ((mark.point.x / CELL).floor() as usize, (mark.point.y / CELL).floor() as usize);
+                self.cells[cell] = link;
+            }
         }
     }
 
@@ -72,10 +79,8 @@ impl Coverage {
                 let mut next = self.cells.get(x, y).unwrap_or(NONE);
                 while next != NONE {
                     let (mark, link) = &self.marks[next as usize];
-                    let dead = self.forgotten.get(next as usize).copied().unwrap_or(false);
                     let distance = (mark.point - p).hypot();
-                    if !dead
-                        && distance <= best.map_or(radius, |(d, _)| d)
+                    if distance <= best.map_or(radius, |(d, _)| d)
                         && mark.heading.dot(heading).abs() >= SAME_DIRECTION_COS
                         && counts(mark)
                     {

@@ -59,6 +59,7 @@ pub fn trace(image: &LineImage, frames: &FrameField) -> Vec<Streamline> {
             continue;
         }
         let id = streamlines.len() as u32;
+        let before = coverage.len();
         let mut walker = Walker::new(image, frames, &mut coverage, id);
         let mut streamline = walker.trace(&seed);
         let width = walker.width();
@@ -66,7 +67,7 @@ pub fn trace(image: &LineImage, frames: &FrameField) -> Vec<Streamline> {
         let fresh = coverage.paint(&streamline.points, &streamline.widths);
         // Less ink of its own than half a dot: a bump on another line's edge.
         if (fresh as f64) < 0.4 * image.line_width * image.line_width {
-            coverage.forget(id);
+            coverage.truncate(before);
         } else {
             streamlines.push(streamline);
         }

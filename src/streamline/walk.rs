@@ -98,7 +98,7 @@ impl<'a> Walker<'a> {
     /// Walks on from the last of `steps`; returns all steps, why it stopped, and whether it closed a loop.
     fn walk(&mut self, mut steps: Vec<Step>, sign: i32) -> (Vec<Step>, Stop, bool) {
         let known = steps.len();
-        let limit = 16 * (self.image.mask.count() + 64);
+        let limit = 16 * (self.coverage.ink_pixels + 64);
         let mut covered_from: Option<usize> = None;
         let (mut free_run, mut covered_run) = (0, 0);
         loop {
