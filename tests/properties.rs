@@ -118,7 +118,7 @@ fn same_under(map: Affine, before: &Drawing, after: &Drawing) -> Result<(), Stri
 
 #[test]
 fn a_quarter_turn_turns_the_strokes() {
-    on_all("quarter turns", [1.0, 0.541], |drawing| {
+    on_all("quarter turns", [1.0, 0.625], |drawing| {
         let upright = scan(drawing);
         let (width, height) = upright.gray.size();
         let turned = moved(&upright, height, width, |x, y| (y, height - 1 - x));
@@ -202,7 +202,7 @@ fn fainter_ink_is_the_same_drawing() {
 
 #[test]
 fn paper_and_pencil_keep_the_drawing() {
-    on_all("pencil", [1.0, 0.958], |drawing| {
+    on_all("pencil", [1.0, 0.916], |drawing| {
         let clean = scan(drawing);
         let pencil = trace(&scan_of(Paper::PENCIL.scan(&clean.gray, 5)));
         let apart = strokes_apart(drawing, &pencil);
