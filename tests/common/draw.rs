@@ -1,0 +1,134 @@
+//! Known drawings and their rasters.
+
+use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
+use fieldtrace::load::Scan;
+use fieldtrace::options::Options;
+use fieldtrace::pipeline::Vectorizer;
+use fieldtrace::raster::Raster;
+use kurbo::{Arc, BezPath, Circle, CubicBez, Line, PathEl, Point, Vec2};
+use tiny_skia::{FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
+
+/// A chain of straight lines.
+pub fn polyline(points: &[Point], closed: bool, width: f64) -> Stroke {
+    let mut segments: Vec<Segment> = points.windows(2).map(|p| Segment::Line(Line::new(p[0], p[1]))).collect();
+    if closed {
+        segments.push(Segment::Line(Line::new(points[points.len() - 1], points[0])));
+    }
+    stroke(Centreline::Path { segments, closed }, width)
+}
+
+/// One straight line.
+pub fn line(from: impl Into<Point>, to: impl Into<Point>, width: f64) -> Stroke {
+    polyline(&[from.into(), to.into()], false, width)
+}
+
+/// A full circle.
+pub fn circle(center: impl Into<Point>, radius: f64, width: f64) -> Stroke {
+    stroke(Centreline::Circle(Circle::new(center, radius)), width)
+}
+
+/// A circular arc; angles in radians.
+pub fn arc(center: impl Into<Point>, radius: f64, start: f64, sweep: f64, width: f64) -> Stroke {
+    let arc = Arc::new(center, (radius, radius), start, sweep, 0.0);
+    stroke(Centreline::Path { segments: vec![Segment::Arc(arc)], closed: false }, width)
+}
+
+/// One cubic.
+pub fn cubic(points: [(f64, f64); 4], width: f64) -> Stroke {
+    let [a, b, c, d] = points;
+    let segments = vec![Segment::Cubic(CubicBez::new(a, b, c, d))];
+    stroke(Centreline::Path { segments, closed: false }, width)
+}
+
+/// A dot of a diameter.
+pub fn dot(center: impl Into<Point>, diameter: f64) -> Stroke {
+    stroke(Centreline::Dot(center.into()), diameter)
+}
+
+fn stroke(centreline: Centreline, width: f64) -> Stroke {
+    Stroke { centreline, width, color: Color::BLACK }
+}
+
+/// The point at a distance and an angle in degrees, clockwise on the screen.
+pub fn polar(center: Point, degrees: f64, distance: f64) -> Point {
+    center + Vec2::from_angle(degrees.to_radians()) * distance
+}
+
+/// A drawing on a canvas.
+pub fn sheet(width: usize, height: usize, strokes: Vec<Stroke>) -> Drawing {
+    Drawing { strokes, ..Drawing::new(width as f64, height as f64) }
+}
+
+/// How ink is put on the canvas.
+#[derive(Clone, Copy, Debug)]
+pub struct Pen {
+    /// How lines end.
+    pub cap: LineCap,
+    /// How lines turn.
+    pub join: LineJoin,
+    /// Whether edges are grey.
+    pub anti_alias: bool,
+}
+
+impl Default for Pen {
+    fn default() -> Self {
+        Self { cap: LineCap::Round, join: LineJoin::Round, anti_alias: true }
+    }
+}
+
+/// Black strokes on white, as a scan, drawn by a round pen.
+pub fn scan(drawing: &Drawing) -> Scan {
+    scan_by(drawing, Pen::default())
+}
+
+/// Black strokes on white, as a scan.
+pub fn scan_by(drawing: &Drawing, pen: Pen) -> Scan {
+    let (width, height) = (drawing.width as u32, drawing.height as u32);
+    let mut pixmap = Pixmap::new(width, height).expect("a canvas");
+    let paint = Paint { anti_alias: pen.anti_alias, ..Paint::default() };
+    for fill in &drawing.fills {
+        let path = skia_path(&fill.outline);
+        pixmap.fill_path(&path, &paint, FillRule::EvenOdd, Transform::identity(), None);
+    }
+    for stroke in &drawing.strokes {
+        if let Centreline::Dot(p) = stroke.centreline {
+            let path = PathBuilder::from_circle(p.x as f32, p.y as f32, 0.5 * stroke.width as f32).expect("a dot");
+            pixmap.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
+            continue;
+        }
+        let pen = tiny_skia::Stroke {
+            width: stroke.width as f32,
+            line_cap: pen.cap,
+            line_join: pen.join,
+            ..tiny_skia::Stroke::default()
+        };
+        pixmap.stroke_path(&skia_path(&stroke.centreline.to_path()), &paint, &pen, Transform::identity(), None);
+    }
+    let gray = pixmap.pixels().iter().map(|p| 1.0 - f32::from(p.alpha()) / 255.0).collect();
+    scan_of(Raster::from_vec(width as usize, height as usize, gray).expect("one sample a pixel"))
+}
+
+fn skia_path(path: &BezPath) -> tiny_skia::Path {
+    let mut builder = PathBuilder::new();
+    let f = |p: Point| (p.x as f32, p.y as f32);
+    for element in path.elements() {
+        match *element {
+            PathEl::MoveTo(p) => builder.move_to(f(p).0, f(p).1),
+            PathEl::LineTo(p) => builder.line_to(f(p).0, f(p).1),
+            PathEl::QuadTo(a, p) => builder.quad_to(f(a).0, f(a).1, f(p).0, f(p).1),
+            PathEl::CurveTo(a, b, p) => builder.cubic_to(f(a).0, f(a).1, f(b).0, f(b).1, f(p).0, f(p).1),
+            PathEl::ClosePath => builder.close(),
+        }
+    }
+    builder.finish().expect("a path")
+}
+
+/// A grey scan without a resolution.
+pub fn scan_of(gray: Raster<f32>) -> Scan {
+    Scan { gray, rgb: None, dpi: None }
+}
+
+/// The trace of a scan under the default options.
+pub fn trace(scan: &Scan) -> Drawing {
+    Vectorizer::new(Options::default()).expect("the defaults are in range").trace(scan).expect("a trace")
+}
