@@ -52,18 +52,18 @@ const CLEAN_GAP: f64 = 0.15;
 const BROKEN: f32 = 0.3;
 
 impl LineImage {
-    /// Whether the ink runs from one point to another without a break.
+    /// Whether the ink of a line, `core` in its middle, runs from one point to another without a break.
     ///
     /// On a clean render the ink that is missing along the way adds up to the length of the gap, however it
     /// lies on the pixels.
-    pub(crate) fn is_inked(&self, a: Point, b: Point) -> bool {
+    pub(crate) fn is_inked(&self, a: Point, b: Point, core: f32) -> bool {
         let length = (b - a).hypot();
         let count = (length / 0.25).ceil().max(1.0) as usize;
-        let along = (0..=count).map(|k| self.ink.sample(a.lerp(b, k as f64 / count as f64)));
+        let along = (0..=count).map(|k| self.ink.sample(a.lerp(b, k as f64 / count as f64)) / core);
         if self.noise > 0.0 {
             return along.min_by(f32::total_cmp).is_none_or(|least| least > BROKEN);
         }
-        let missing: f64 = along.map(|ink| 1.0 - f64::from(ink)).sum();
+        let missing: f64 = along.map(|ink| (1.0 - f64::from(ink)).max(0.0)).sum();
         missing * length / count as f64 <= CLEAN_GAP
     }
 }

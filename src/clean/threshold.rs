@@ -20,7 +20,10 @@ pub(super) fn grain(ink: &Raster<f32>) -> f64 {
     let flat = ink.data().iter().filter(|&&i| i < FLAT).count();
     // The paper's level is an upper quantile: of grainy paper, most lies below it.
     if 5 * flat >= 4 * paper {
-        return 0.0;
+        // Without anti-aliasing the edges are staircases, which ask to be smoothed like grain.
+        let full = ink.data().iter().filter(|&&i| i > 1.0 - PAPER).count();
+        let grey = ink.data().len() - paper - full;
+        return if 50 * grey < full { LEAST_GRAIN } else { 0.0 };
     }
     // From neighbours, so that uneven light does not count; of these the median, so that lines do not.
     let mut steps: Vec<f32> = Vec::new();

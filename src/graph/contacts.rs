@@ -220,7 +220,7 @@ impl Finder<'_> {
         let points = &self.lines[end.line].points;
         let heading = (points[last] - points[before]).normalize();
         let mut length = 0.0;
-        while length < most && self.image.is_inked(end.point, end.point + heading * (length + 0.25)) {
+        while length < most && self.image.is_inked(end.point, end.point + heading * (length + 0.25), end.core) {
             length += 0.25;
         }
         length
@@ -282,7 +282,7 @@ impl Finder<'_> {
         let reach = if end.stop == Stop::Merged { 0.75 } else { 0.9 } * self.image.line_width.max(1.5);
         let from = end.point;
         for (place, foot, distance) in self.index.near(from, reach) {
-            if self.is_own_neighbourhood(end, place) || !self.image.is_inked(from, foot) {
+            if self.is_own_neighbourhood(end, place) || !self.image.is_inked(from, foot, end.core) {
                 continue;
             }
             let touch = match self.end_near(place, 0.8 * self.image.line_width) {

@@ -26,6 +26,8 @@ pub(super) struct End {
     pub tail: Tail,
     /// Line width near the end.
     pub width: f64,
+    /// Ink in the line's middle near the end, at most 1.
+    pub core: f32,
     /// Why the walk stopped.
     pub stop: Stop,
 }
@@ -64,20 +66,25 @@ fn end(image: &LineImage, lines: &[Streamline], line: usize, side: usize) -> Opt
         .take_while(|&k| k < from + 3 || streamline.widths[index(k)].is_finite())
         .map(|k| streamline.points[index(k)])
         .collect();
+    let core = median(run.iter().map(|&p| image.ink.sample(p))).map_or(1.0, |c| c.clamp(0.3, 1.0));
     let oldest_first: Vec<Point> = run.into_iter().rev().collect();
     let outwards = streamline.points[index(0)] - streamline.points[index((n - 1).min(2))];
     let heading = if outwards.hypot() > 1e-9 { outwards.normalize() } else { Vec2::new(1.0, 0.0) };
     let fallback = Tail { point: streamline.points[index(0)], heading, curvature: 0.0 };
     let tail = Tail::fit(&oldest_first, 0.1).unwrap_or(fallback);
     let point = streamline.points[index(0)];
-    Some(End { line, side, point, tip: index(tip), tail, width, stop: streamline.stops[side] })
+    Some(End { line, side, point, tip: index(tip), tail, width, core, stop: streamline.stops[side] })
 }
 
 fn median_width(line: &Streamline, index: impl Fn(usize) -> usize, typical: f64) -> f64 {
     let near = (0..line.points.len()).map(|k| line.widths[index(k)]).filter(|w| w.is_finite()).take(40);
-    let mut widths: Vec<f64> = near.collect();
-    widths.sort_by(f64::total_cmp);
-    widths.get(widths.len() / 2).copied().unwrap_or(typical)
+    median(near.map(|w| w as f32)).map_or(typical, f64::from)
+}
+
+fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let mut values: Vec<f32> = values.collect();
+    values.sort_by(f32::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// Takes out lines that are dots: about as long, caps included, as they are wide, and touching nothing else.

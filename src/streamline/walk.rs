@@ -178,7 +178,7 @@ impl<'a> Walker<'a> {
         let inked = if self.image.noise > 0.0 {
             self.image.ink.sample(point) >= END_NOISY * self.core
         } else {
-            self.image.is_inked(point - heading * WHOLE, point + heading * WHOLE)
+            self.image.is_inked(point - heading * WHOLE, point + heading * WHOLE, self.core.min(1.0))
         };
         let Some(profile) = self.profile(point, normal).filter(|_| inked) else {
             return self.across_break(here.point, heading);
