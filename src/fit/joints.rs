@@ -7,7 +7,7 @@ use super::line::fit_line;
 use super::samples::Samples;
 use super::segmentation::{Kind, Piece, near};
 use crate::drawing::Segment;
-use kurbo::{Line, Point, Vec2};
+use kurbo::{Line, ParamCurveNearest, Point, Vec2};
 
 /// Pieces that meet at a larger angle than this (18 degrees) make a corner.
 const CORNER: f64 = 0.31;
@@ -18,6 +18,13 @@ const ARC_KINK: f64 = 0.026;
 
 /// One cubic turns no further than this (about 100 degrees) of an arc that is not exact.
 const QUARTER: f64 = 1.75;
+
+/// A joined curve may miss its points by this many times what is taken for noise, root mean square.
+const MISFIT: f64 = 2.0;
+/// Lines shorter than this many line widths give way to a curve beside them.
+const SHORT: f64 = 5.0;
+/// How many pieces of a section are given more freedom.
+const REPAIRS: usize = 4;
 
 /// What a piece says about its ends before joints are placed.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +48,9 @@ struct Joint {
 
 /// The segments of a section. `closed` sections join their last piece to their first. Ends of an open section
 /// keep to `ends` where given.
+///
+/// A tangent taken over from a neighbour can hold a curve off its points. Then a short line beside it gives way and
+/// becomes a curve itself, or else the curve is cut in two.
 pub(super) fn join(
     samples: &Samples,
     pieces: &[Piece],
@@ -48,6 +58,65 @@ pub(super) fn join(
     ends: [Option<Point>; 2],
     tolerance: Tolerance,
 ) -> Vec<Segment> {
+    let mut pieces = pieces.to_vec();
+    let limit = MISFIT * tolerance.deviation(samples);
+    for _ in 0..REPAIRS {
+        let segments = join_once(samples, &pieces, closed, ends, tolerance);
+        let misfits = pieces.iter().zip(&segments).map(|(piece, of_piece)| misfit(samples, *piece, of_piece));
+        let worst = misfits.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        match worst {
+            Some((k, misfit)) if misfit > limit && repair(samples, &mut pieces, k, closed, tolerance) => {}
+            _ => return segments.concat(),
+        }
+    }
+    join_once(samples, &pieces, closed, ends, tolerance).concat()
+}
+
+/// Root mean square distance of a curved piece's samples from its segments; 0 for a line.
+fn misfit(samples: &Samples, piece: Piece, segments: &[Segment]) -> f64 {
+    if piece.kind == Kind::Line {
+        return 0.0;
+    }
+    let curve: Vec<Point> = segments.iter().flat_map(|s| (0..=32).map(|k| s.eval(f64::from(k) / 32.0))).collect();
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for k in piece.from..=piece.to {
+        let p = samples.points[k];
+        let nearest = curve.windows(2).map(|w| Line::new(w[0], w[1]).nearest(p, 1e-6).distance_sq);
+        sum += samples.weights[k] * nearest.fold(f64::MAX, f64::min);
+        weight += samples.weights[k];
+    }
+    (sum / weight.max(1e-9)).sqrt()
+}
+
+/// Gives a piece that misses its points more freedom; `false` when there is none to give.
+fn repair(samples: &Samples, pieces: &mut Vec<Piece>, k: usize, closed: bool, tolerance: Tolerance) -> bool {
+    let n = pieces.len();
+    let neighbours = [(k > 0 || closed).then(|| (k + n - 1) % n), (k + 1 < n || closed).then(|| (k + 1) % n)];
+    let is_short = |p: &Piece| samples.arc[p.to] - samples.arc[p.from] < SHORT * tolerance.width;
+    let short: Vec<usize> =
+        neighbours.into_iter().flatten().filter(|&j| pieces[j].kind == Kind::Line && is_short(&pieces[j])).collect();
+    if !short.is_empty() {
+        short.iter().for_each(|&j| pieces[j].kind = Kind::Cubic);
+        return true;
+    }
+    let Piece { from, to, .. } = pieces[k];
+    let middle = samples.arc.partition_point(|&a| a < 0.5 * (samples.arc[from] + samples.arc[to]));
+    if middle < from + 3 || middle + 3 > to {
+        return false;
+    }
+    pieces
+        .splice(k..=k, [Piece { from, to: middle, kind: Kind::Cubic }, Piece { from: middle, to, kind: Kind::Cubic }]);
+    true
+}
+
+/// The segments of each piece, joined.
+fn join_once(
+    samples: &Samples,
+    pieces: &[Piece],
+    closed: bool,
+    ends: [Option<Point>; 2],
+    tolerance: Tolerance,
+) -> Vec<Vec<Segment>> {
     let drafts: Vec<Draft> = pieces.iter().map(|&p| draft(samples, p, tolerance)).collect();
     let n = drafts.len();
     let mut joints: Vec<Joint> = Vec::with_capacity(n + 1);
@@ -62,7 +131,7 @@ pub(super) fn join(
     for (k, draft) in drafts.iter().enumerate() {
         align_tangents(draft, k, n, closed, &mut joints);
     }
-    drafts.iter().enumerate().flat_map(|(k, d)| segments(samples, d, joints[k], joints[k + 1], tolerance)).collect()
+    drafts.iter().enumerate().map(|(k, d)| segments(samples, d, joints[k], joints[k + 1], tolerance)).collect()
 }
 
 fn draft(samples: &Samples, piece: Piece, tolerance: Tolerance) -> Draft {

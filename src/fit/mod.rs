@@ -28,6 +28,14 @@ struct Tolerance {
     width: f64,
 }
 
+impl Tolerance {
+    /// Deviation of a section's points from its curves that is taken for noise: a part of the tolerance, or what
+    /// the points themselves scatter by.
+    fn deviation(&self, samples: &samples::Samples) -> f64 {
+        (0.25 * self.fit).max(samples.scatter(0.7 * self.width))
+    }
+}
+
 /// Fits every trail of a graph. The drawing is in pixels of the line image.
 pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing {
     let tolerance = Tolerance { fit: (options.detail * image.line_width).max(0.1), width: image.line_width };

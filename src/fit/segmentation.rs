@@ -39,7 +39,7 @@ pub(super) struct Piece {
 /// The cheapest chain of pieces over all samples. Needs at least two samples.
 pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
     let knots = knots(samples, tolerance);
-    let deviation = (0.25 * tolerance.fit).max(samples.scatter(0.7 * tolerance.width));
+    let deviation = tolerance.deviation(samples);
     let mut cost = vec![f64::INFINITY; knots.len()];
     let mut best: Vec<Option<(usize, Kind)>> = vec![None; knots.len()];
     cost[0] = 0.0;
