@@ -4,7 +4,7 @@ use crate::graph::TrailPoint;
 use kurbo::{Point, Vec2};
 
 /// Weight of a point inside a junction, where the ink does not tell where the line is.
-const JUNCTION_WEIGHT: f64 = 0.03;
+const JUNCTION_WEIGHT: f64 = 0.01;
 
 /// Points along a section.
 #[derive(Clone, Debug)]

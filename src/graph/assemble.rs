@@ -1,6 +1,6 @@
 //! The graph from resolved lines.
 
-use super::contacts::{LineIndex, Place, piece_count};
+use super::contacts::{LineIndex, Place, direction, piece_count};
 use super::ends::{End, end_id};
 use super::nodes::Node;
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
@@ -18,6 +18,9 @@ const INSIDE: f64 = 0.75;
 
 /// A stroke that turns by less than this at a node (35 degrees) has no junction to be cut out.
 const SMOOTH: f64 = 0.61;
+
+/// Crossings at smaller angles than this sine's (8 degrees) are taken to overlap no further.
+const LEAST_SINE: f64 = 0.14;
 
 /// A cut of a line at a node.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +97,7 @@ impl<'a> Assembly<'a> {
 
     /// Lines are cut where they cross, unless a node is there already.
     fn add_crossings(&mut self) {
-        let lines = std::mem::take(&mut self.lines);
+        let mut lines = std::mem::take(&mut self.lines);
         let index = LineIndex::new(&lines);
         let places = self.nodes.iter().enumerate();
         let nodes = RTree::bulk_load(
@@ -117,6 +120,12 @@ impl<'a> Assembly<'a> {
             }
         }
         for (a, b, position) in found.into_values().flatten() {
+            let sine = direction(&lines, a).cross(direction(&lines, b)).abs();
+            // Up to here the inks of the two lines overlap, and a cross profile shows their union.
+            let overlap = self.image.line_width / sine.max(LEAST_SINE);
+            for place in [a, b] {
+                blank(&mut lines[place.line], place.at, overlap);
+            }
             let node = self.out.graph.add_node(Junction { position, kind: JunctionKind::Crossing });
             self.cuts[a.line].push(Cut { at: a.at, node });
             self.cuts[b.line].push(Cut { at: b.at, node });
@@ -245,6 +254,18 @@ impl<'a> Assembly<'a> {
         });
         graph.retain_nodes(|graph, n| graph.neighbors_undirected(n).next().is_some());
         self.out.trails = trails;
+    }
+}
+
+/// Forgets the widths of a line within `reach` pixels along it from a place: there they tell of another line too.
+fn blank(line: &mut Streamline, at: f64, reach: f64) {
+    let n = line.points.len() as i64;
+    let (at, span) = (at.round() as i64, (reach / STEP) as i64);
+    for k in at - span..=at + span {
+        let k = if line.closed { k.rem_euclid(n) } else { k };
+        if (0..n).contains(&k) {
+            line.widths[k as usize] = f64::NAN;
+        }
     }
 }
 
