@@ -59,6 +59,20 @@ pub enum Error {
         /// Its own words.
         reason: String,
     },
+    /// Weights of the field network could not be read or written.
+    #[error("{input}: {reason}")]
+    Weights {
+        /// The file, or what stands for it.
+        input: String,
+        /// What is wrong, in one line.
+        reason: String,
+    },
+    /// Training cannot go on.
+    #[error("training stopped: {reason}")]
+    Train {
+        /// Why, in one line.
+        reason: String,
+    },
     /// An observer refused a stage's result.
     #[error("vetoed after the {stage} stage: {reason}")]
     Vetoed {

@@ -74,6 +74,8 @@ pub mod estimate;
 pub mod field;
 pub mod fit;
 pub mod graph;
+#[cfg(feature = "learned")]
+pub mod ground_truth;
 pub mod hooks;
 pub mod inspect;
 pub mod load;
@@ -83,6 +85,12 @@ mod profile;
 pub mod raster;
 pub mod render;
 pub mod streamline;
+#[cfg(feature = "learned")]
+pub mod synth;
+#[cfg(feature = "learned")]
+pub mod train;
+#[cfg(feature = "learned")]
+pub mod unet;
 pub mod write;
 
 pub use error::{Error, Result};

@@ -3,7 +3,7 @@
 use crate::clean::{self, LineImage};
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
-use crate::estimate::{FieldEstimator, StructureTensor};
+use crate::estimate::FieldEstimator;
 use crate::field::{FrameField, PolyVectorField};
 use crate::hooks::Observer;
 use crate::load::Scan;
@@ -23,7 +23,7 @@ impl Vectorizer {
     /// [`Error::Option`] when an option is out of its range.
     pub fn new(options: Options) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, estimator: Box::new(StructureTensor::default()) })
+        Ok(Self { options, estimator: default_estimator()? })
     }
 
     /// The same with another source of fields.
@@ -116,4 +116,16 @@ impl Vectorizer {
         observer.on_drawing(&mut drawing)?;
         Ok(drawing)
     }
+}
+
+/// The U-Net where it is built in, else the structure tensor.
+#[cfg(feature = "learned")]
+fn default_estimator() -> Result<Box<dyn FieldEstimator>> {
+    Ok(Box::new(crate::estimate::UNet::built_in()?))
+}
+
+/// The U-Net where it is built in, else the structure tensor.
+#[cfg(not(feature = "learned"))]
+fn default_estimator() -> Result<Box<dyn FieldEstimator>> {
+    Ok(Box::new(crate::estimate::StructureTensor::default()))
 }

@@ -1,8 +1,12 @@
 //! From ink to a 2-PolyVector field.
 
 mod tensor;
+#[cfg(feature = "learned")]
+mod unet;
 
 pub use tensor::StructureTensor;
+#[cfg(feature = "learned")]
+pub use unet::UNet;
 
 use crate::clean::LineImage;
 use crate::error::Result;

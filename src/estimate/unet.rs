@@ -1,0 +1,339 @@
+//! The field from the trained network.
+
+use super::FieldEstimator;
+use crate::clean::LineImage;
+use crate::error::Result;
+use crate::field::{PolyVectorField, decode};
+use crate::raster::{Mask, Raster};
+use crate::unet::engine::{Engine, Scratch, TileCells};
+use crate::unet::{Features, UNetConfig, Weights, features};
+use burn::tensor::{Device, Tensor, TensorData};
+use num_complex::Complex32;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Largest side of the part of a tile that is kept, in pixels.
+const CORE: usize = 256;
+
+/// Pixels around a tile's core that the network also sees.
+const HALO: usize = 32;
+
+/// Ink is computed together with this many pixels around it; what is further away counts as blank paper.
+const CONTEXT: usize = 8;
+
+/// Pixels off the mask that get a field too, so that it can be interpolated at the edge of the ink.
+const MARGIN: usize = 2;
+
+/// The field from the U-Net: Taktasheva et al. 2019.
+#[derive(Debug)]
+pub struct UNet {
+    config: UNetConfig,
+    runner: Runner,
+}
+
+#[derive(Debug)]
+enum Runner {
+    /// The crate's own inference on the CPU, only where there is ink.
+    Engine(Box<Engine>),
+    /// The tensor library on some device, tile by tile.
+    Burn(Box<crate::unet::UNet>, Device),
+}
+
+impl UNet {
+    /// The network of some weights, run by the crate's own engine on the CPU.
+    pub fn new(weights: &Weights) -> Self {
+        let engine = Engine::new(weights.config, &weights.model);
+        Self { config: weights.config, runner: Runner::Engine(Box::new(engine)) }
+    }
+
+    /// The network that the program carries.
+    ///
+    /// # Errors
+    /// [`crate::Error::Weights`] never, unless the program was built around a broken file.
+    pub fn built_in() -> Result<Self> {
+        Ok(Self::new(&crate::unet::built_in(&Device::flex())?))
+    }
+
+    /// The network in a file that [`crate::unet::save`] wrote.
+    ///
+    /// # Errors
+    /// [`crate::Error::Weights`] when the file cannot be read or does not hold such a network.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Ok(Self::new(&crate::unet::load(path, &Device::flex())?))
+    }
+
+    /// The network of some weights, run by the tensor library on the device that the weights are on.
+    pub fn on_device(weights: Weights, device: Device) -> Self {
+        Self { config: weights.config, runner: Runner::Burn(Box::new(weights.model), device) }
+    }
+}
+
+impl FieldEstimator for UNet {
+    fn name(&self) -> &str {
+        "unet"
+    }
+
+    fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
+        let (width, height) = image.ink.size();
+        let ink = normalised(image);
+        let grid = Grid::new(width, height, self.config.multiple());
+        let tiles: Vec<(usize, usize)> = grid.tiles().collect();
+        let parts: Vec<Vec<Pixel>> = match &self.runner {
+            Runner::Engine(engine) => {
+                let spare = Mutex::new(Vec::<Scratch>::new());
+                let run = |&at: &(usize, usize)| {
+                    let Some(tile) = Tile::new(&grid, at, &image.mask) else { return Vec::new() };
+                    let mut scratch = lock(&spare).pop().unwrap_or_default();
+                    let pixels = tile.by_engine(engine, &mut scratch, &ink, self.config);
+                    lock(&spare).push(scratch);
+                    pixels
+                };
+                tiles.par_iter().map(run).collect()
+            }
+            Runner::Burn(model, device) => {
+                let run = |&at: &(usize, usize)| {
+                    let tile = Tile::new(&grid, at, &image.mask);
+                    tile.map_or_else(Vec::new, |t| t.by_burn(model, device, &ink, self.config))
+                };
+                tiles.iter().map(run).collect()
+            }
+        };
+        assemble(width, height, &image.mask, parts)
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A pixel's index in the image with its coefficients.
+type Pixel = (usize, [f32; 4]);
+
+/// The ink with its dark cores at 1: nine tenths of the way up the ink on the mask.
+fn normalised(image: &LineImage) -> Raster<f32> {
+    let mut counts = [0usize; 64];
+    let inked = image.ink.data().iter().zip(image.mask.data()).filter(|(_, m)| **m);
+    inked.for_each(|(i, _)| counts[(i.clamp(0.0, 1.0) * 63.0) as usize] += 1);
+    let mut left = counts.iter().sum::<usize>() / 10;
+    let mut core = 1.0f32;
+    for (bin, &n) in counts.iter().enumerate().rev() {
+        if left < n {
+            core = ((bin as f32 + 0.5) / 63.0).clamp(0.2, 1.0);
+            break;
+        }
+        left -= n;
+    }
+    image.ink.map(|i| (i / core).clamp(0.0, 1.0))
+}
+
+/// How an image is cut into tiles of one size.
+struct Grid {
+    image: (usize, usize),
+    core: (usize, usize),
+    multiple: usize,
+}
+
+impl Grid {
+    fn new(width: usize, height: usize, multiple: usize) -> Self {
+        let core = |n: usize| n.div_ceil(n.div_ceil(CORE).max(1)).next_multiple_of(multiple);
+        Self { image: (width, height), core: (core(width), core(height)), multiple }
+    }
+
+    fn halo(&self) -> usize {
+        HALO.next_multiple_of(self.multiple)
+    }
+
+    /// Top left corners of the cores.
+    fn tiles(&self) -> impl Iterator<Item = (usize, usize)> {
+        let ((width, height), (w, h)) = (self.image, self.core);
+        (0..height).step_by(h.max(1)).flat_map(move |y| (0..width).step_by(w.max(1)).map(move |x| (x, y)))
+    }
+}
+
+/// A core with its halo.
+struct Tile<'a> {
+    grid: &'a Grid,
+    /// Top left corner of the core.
+    at: (usize, usize),
+    /// Width and height with the halo.
+    size: (usize, usize),
+    cells: TileCells,
+    mask: &'a Mask,
+}
+
+impl<'a> Tile<'a> {
+    /// `None` where the core has no ink.
+    fn new(grid: &'a Grid, at: (usize, usize), mask: &'a Mask) -> Option<Self> {
+        let (halo, m) = (grid.halo(), grid.multiple);
+        let size = (grid.core.0 + 2 * halo, grid.core.1 + 2 * halo);
+        let (columns, rows) = (size.0 / m, size.1 / m);
+        let mut active = vec![false; columns * rows];
+        let mut any = false;
+        // Ink beyond the core counts as far as the core's ink is influenced by it most.
+        let (near, far) = (halo - halo / 2, halo / 2);
+        for y in near..size.1 - far {
+            for x in near..size.0 - far {
+                if mask.get((at.0 + x) as i64 - halo as i64, (at.1 + y) as i64 - halo as i64) != Some(true) {
+                    continue;
+                }
+                let inside = |p: usize, core: usize| p >= halo && p < halo + core;
+                any |= inside(x, grid.core.0) && inside(y, grid.core.1);
+                for v in (y - CONTEXT) / m..=(y + CONTEXT) / m {
+                    for u in (x - CONTEXT) / m..=(x + CONTEXT) / m {
+                        active[v * columns + u] = true;
+                    }
+                }
+            }
+        }
+        any.then(|| Self { grid, at, size, cells: TileCells::new(columns, rows, active), mask })
+    }
+
+    /// The ink under the tile, the image's edge pixels repeated outside.
+    fn cut(&self, ink: &Raster<f32>) -> Raster<f32> {
+        let halo = self.grid.halo();
+        let (w, h) = self.grid.image;
+        let clamp = |p: usize, n: usize| p.saturating_sub(halo).min(n - 1);
+        Raster::from_fn(self.size.0, self.size.1, |x, y| ink[(clamp(self.at.0 + x, w), clamp(self.at.1 + y, h))])
+    }
+
+    /// The index in the image of a pixel of the tile, if it is in the core and near ink.
+    fn wanted(&self, x: usize, y: usize) -> Option<usize> {
+        let halo = self.grid.halo();
+        let inside = |p: usize, core: usize| p >= halo && p < halo + core;
+        if !inside(x, self.grid.core.0) || !inside(y, self.grid.core.1) {
+            return None;
+        }
+        let (x, y) = (self.at.0 + x - halo, self.at.1 + y - halo);
+        let (w, h) = self.grid.image;
+        if x >= w || y >= h {
+            return None;
+        }
+        let rows = y.saturating_sub(MARGIN)..(y + MARGIN + 1).min(h);
+        let (left, right) = (x.saturating_sub(MARGIN), (x + MARGIN + 1).min(w));
+        let near = self.mask[(x, y)] || rows.into_iter().any(|v| self.mask.row(v)[left..right].contains(&true));
+        near.then_some(y * w + x)
+    }
+
+    fn by_engine(&self, engine: &Engine, scratch: &mut Scratch, ink: &Raster<f32>, config: UNetConfig) -> Vec<Pixel> {
+        let Features { channels, base } = features(&self.cut(ink), config.input);
+        let n = self.size.0 * self.size.1;
+        let mut out = Vec::new();
+        engine.run(scratch, &channels, &self.cells, |x, y, values| {
+            if let Some(index) = self.wanted(x, y) {
+                out.push((index, with_base(values, &base, n, y * self.size.0 + x)));
+            }
+        });
+        out
+    }
+
+    fn by_burn(&self, model: &crate::unet::UNet, device: &Device, ink: &Raster<f32>, config: UNetConfig) -> Vec<Pixel> {
+        let Features { channels, base } = features(&self.cut(ink), config.input);
+        let (width, height) = self.size;
+        let n = width * height;
+        let data = TensorData::new(channels, [1, config.input.channels(), height, width]);
+        let output = model.forward(Tensor::from_data(data, device)).into_data();
+        let output = output.try_into_vec::<f32>().unwrap_or_else(|_| vec![0.0; 4 * n]);
+        let mut out = Vec::new();
+        for y in 0..height {
+            for x in 0..width {
+                if let Some(index) = self.wanted(x, y) {
+                    let i = y * width + x;
+                    out.push((index, with_base([0, 1, 2, 3].map(|k| output[k * n + i]), &base, n, i)));
+                }
+            }
+        }
+        out
+    }
+}
+
+fn with_base(mut values: [f32; 4], base: &[f32], n: usize, i: usize) -> [f32; 4] {
+    if !base.is_empty() {
+        values[0] += base[i];
+        values[1] += base[n + i];
+    }
+    values
+}
+
+/// Puts the tiles' pixels together. Confidence is the modulus of the stronger root, at most 1, and less off the mask.
+fn assemble(width: usize, height: usize, mask: &Mask, parts: Vec<Vec<Pixel>>) -> Result<PolyVectorField> {
+    let zero = Raster::filled(width, height, Complex32::default());
+    let (mut c0, mut c2) = (zero.clone(), zero);
+    let mut confidence = Raster::filled(width, height, 0.0f32);
+    for (i, [a, b, c, d]) in parts.into_iter().flatten() {
+        let (p, q) = (Complex32::new(a, b), Complex32::new(c, d));
+        (c0.data_mut()[i], c2.data_mut()[i]) = (p, q);
+        if decode(p, q).is_some() {
+            let strong = strong_root(p, q).clamp(0.05, 1.0);
+            confidence.data_mut()[i] = if mask.data()[i] { strong } else { 0.25 * strong };
+        }
+    }
+    PolyVectorField::new(c0, c2, confidence)
+}
+
+/// Modulus of the larger root of `w^2 + c2 w + c0`.
+fn strong_root(c0: Complex32, c2: Complex32) -> f32 {
+    let root = (c2 * c2 - 4.0 * c0).sqrt();
+    0.5 * (root - c2).norm().max((root + c2).norm())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clean::clean;
+    use crate::load::Scan;
+    use crate::options::Options;
+    use crate::render::render;
+    use crate::synth;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    fn inked(ink: Raster<f32>) -> LineImage {
+        let mask = ink.map(|i| i > 0.5);
+        let depth = mask.map(|m| if m { 1.0 } else { 0.0 });
+        let paper = Scan { gray: Raster::filled(1, 1, 1.0), rgb: None, dpi: None };
+        LineImage { ink, mask, depth, line_width: 3.0, scale: 1.0, ..clean(&paper, &Options::default()) }
+    }
+
+    fn image(seed: u64, size: usize) -> LineImage {
+        let drawing = synth::drawing(&mut ChaCha8Rng::seed_from_u64(seed), size);
+        let ink = render(&drawing);
+        inked(ink)
+    }
+
+    fn weights() -> Weights {
+        let config = UNetConfig { width: 4, levels: 2, ..UNetConfig::default() };
+        let device = Device::flex();
+        Weights { config, model: config.init(&device, 7) }
+    }
+
+    #[test]
+    fn every_size_of_image_gets_a_field_on_its_ink() {
+        let net = UNet::new(&weights());
+        for (width, height) in [(1, 1), (7, 300), (64, 64), (301, 290)] {
+            let whole = image(4, 301);
+            let part = inked(Raster::from_fn(width, height, |x, y| whole.ink[(x, y)]));
+            let field = net.estimate(&part).unwrap();
+            assert_eq!(field.size(), (width, height));
+            assert!(part.mask.data().iter().zip(field.confidence().data()).all(|(m, c)| !m || *c > 0.0));
+        }
+    }
+
+    #[test]
+    fn the_engine_and_the_tensor_library_agree() {
+        let (weights, image) = (weights(), image(5, 290));
+        let engine = UNet::new(&weights).estimate(&image).unwrap();
+        let burn = UNet::on_device(weights, Device::flex()).estimate(&image).unwrap();
+        let pairs =
+            engine.c0().data().iter().zip(burn.c0().data()).chain(engine.c2().data().iter().zip(burn.c2().data()));
+        let mean = pairs.clone().map(|(a, b)| (a - b).norm()).sum::<f32>() / image.mask.count() as f32;
+        assert!(mean < 0.02, "{mean}");
+    }
+
+    #[test]
+    fn blank_paper_has_no_field() {
+        let blank = inked(Raster::filled(50, 40, 0.0));
+        let field = UNet::new(&weights()).estimate(&blank).unwrap();
+        assert!(field.confidence().data().iter().all(|c| *c == 0.0));
+    }
+}

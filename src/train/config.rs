@@ -1,0 +1,118 @@
+//! What a training run is told, and where its data comes from.
+
+use crate::error::{Error, Result};
+use crate::unet::UNetConfig;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A training run. Everything that decides its result is in here.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TrainConfig {
+    /// Seed of weights, data and everything else.
+    pub seed: u64,
+    /// Optimisation steps.
+    pub steps: usize,
+    /// Crops a step.
+    pub batch: usize,
+    /// Side of a crop in pixels.
+    pub crop: usize,
+    /// Largest learning rate; it rises over the first `warmup` steps and falls along a cosine to a hundredth.
+    pub rate: f64,
+    /// Steps of the rise.
+    pub warmup: usize,
+    /// Weight of the squared difference of the coefficients.
+    pub alignment: f64,
+    /// Weight of the angle between true and predicted roots; 0 in the paper.
+    pub angle: f64,
+    /// Weight of the smoothness of the prediction, the paper's gamma.
+    pub gamma: f64,
+    /// Share of the data that is scans; the rest is clean.
+    pub scans: f64,
+    /// Side of the synthetic drawings that crops are cut from, in pixels.
+    pub sheet: usize,
+    /// Crops cut from each drawing.
+    pub crops_a_sheet: usize,
+    /// Steps between validations.
+    pub validate_every: usize,
+    /// Drawings to validate on, each as clean and as scan.
+    pub validation_sheets: usize,
+    /// Seconds between checkpoints.
+    pub checkpoint_seconds: u64,
+    /// Stop after this many validations without a better one; 0 never stops early.
+    pub patience: usize,
+    /// The network.
+    pub network: UNetConfig,
+}
+
+impl Default for TrainConfig {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            steps: 10_000,
+            batch: 16,
+            crop: 64,
+            rate: 3e-3,
+            warmup: 100,
+            alignment: 1.0,
+            angle: 1.0,
+            gamma: 1e-3,
+            scans: 0.65,
+            sheet: 144,
+            crops_a_sheet: 4,
+            validate_every: 500,
+            validation_sheets: 48,
+            checkpoint_seconds: 120,
+            patience: 0,
+            network: UNetConfig::default(),
+        }
+    }
+}
+
+impl TrainConfig {
+    /// Reads a TOML file; what it does not name keeps its default.
+    ///
+    /// # Errors
+    /// [`Error::Read`] or [`Error::Train`] when the file cannot be read or understood.
+    pub fn read(path: &Path) -> Result<Self> {
+        let input = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|cause| Error::Read { input: input.clone(), cause })?;
+        let config: Self =
+            toml::from_str(&text).map_err(|e| Error::Train { reason: format!("{input}: {}", e.message()) })?;
+        config.validate()?;
+        Ok(config)
+    }
+
+    /// Checks that the numbers fit together.
+    ///
+    /// # Errors
+    /// [`Error::Train`] names the first that does not.
+    pub fn validate(&self) -> Result<()> {
+        let fail = |reason: String| Err(Error::Train { reason });
+        let multiple = self.network.multiple();
+        if self.network.width == 0 || !(1..=2).contains(&self.network.patch) {
+            return fail("network.width is at least 1 and network.patch 1 or 2".into());
+        }
+        if self.crop == 0 || !self.crop.is_multiple_of(multiple) {
+            return fail(format!("crop is {} and has to be a multiple of {multiple}", self.crop));
+        }
+        if !self.sheet.is_multiple_of(multiple) || self.sheet < self.crop {
+            return fail(format!("sheet is {} and has to be a multiple of {multiple}, at least crop", self.sheet));
+        }
+        if self.batch == 0 || self.crops_a_sheet == 0 || !self.batch.is_multiple_of(self.crops_a_sheet) {
+            return fail("batch has to be a multiple of crops_a_sheet".into());
+        }
+        if !(0.0..=1.0).contains(&self.scans) || self.rate.is_nan() || self.rate <= 0.0 {
+            return fail("scans is between 0 and 1, and rate is positive".into());
+        }
+        Ok(())
+    }
+
+    /// The learning rate of a step.
+    pub fn rate_at(&self, step: usize) -> f64 {
+        let rise = ((step + 1) as f64 / self.warmup.max(1) as f64).min(1.0);
+        let progress = (step as f64 / self.steps.max(1) as f64).min(1.0);
+        let cosine = 0.5 * (1.0 + (std::f64::consts::PI * progress).cos());
+        self.rate * rise * (0.01 + 0.99 * cosine)
+    }
+}

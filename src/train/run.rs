@@ -1,0 +1,211 @@
+//! The training loop.
+
+use super::checkpoint::{self, State};
+use super::config::TrainConfig;
+use super::data::batches;
+use super::loss::{Batch, Loss};
+use super::validate::{Validation, Validator};
+use crate::error::{Error, Result};
+use crate::unet::{self, UNet};
+use burn::module::Module;
+use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
+use burn::tensor::Device;
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What a caller hears while training goes on.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Steps done.
+    pub step: usize,
+    /// Steps in all.
+    pub steps: usize,
+    /// Mean of the loss and of its parts (total, alignment, angle in radians, smoothness) since the last validation.
+    pub loss: [f64; 4],
+    /// Seconds of training so far, over all resumed parts.
+    pub seconds: f64,
+    /// The validation after this step, where there was one.
+    pub validation: Option<Validation>,
+}
+
+/// A run: a network with its optimiser at some step, and the directory that it is kept in.
+pub struct Trainer {
+    config: TrainConfig,
+    dir: PathBuf,
+    device: Device,
+    model: UNet,
+    optimizer: ModuleOptimizer,
+    state: State,
+}
+
+impl Trainer {
+    /// A run in a directory: goes on from its checkpoint if `resume` is set and there is one, else starts anew, from
+    /// the weights in `from` where given.
+    ///
+    /// # Errors
+    /// [`Error::Train`] when the configuration is not sound or the checkpoint is of another one; [`Error::Weights`]
+    /// when `from` does not fit.
+    pub fn new(config: TrainConfig, dir: &Path, device: &Device, resume: bool, from: Option<&Path>) -> Result<Self> {
+        config.validate()?;
+        fs::create_dir_all(dir).map_err(|cause| Error::Write { path: dir.into(), cause })?;
+        let device = device.clone().autodiff();
+        let fresh = || (config.network.init(&device, config.seed), AdamConfig::new().with_epsilon(1e-8).init());
+        let (mut model, mut optimizer) = fresh();
+        let mut state = State::default();
+        if let Some(path) = from {
+            let weights = unet::load(path, &device)?;
+            if weights.config != config.network {
+                return Err(Error::Train { reason: format!("{}: is a network of another shape", path.display()) });
+            }
+            model = weights.model;
+        }
+        if resume {
+            let (blank, rest) = fresh();
+            if let Some((saved, s, m, o)) = checkpoint::load(dir, blank, rest)? {
+                if saved != config {
+                    return Err(Error::Train { reason: "the checkpoint is of another configuration".into() });
+                }
+                (state, model, optimizer) = (s, m, o);
+            }
+        }
+        Ok(Self { config, dir: dir.into(), device, model, optimizer, state })
+    }
+
+    /// Steps done.
+    pub fn step(&self) -> usize {
+        self.state.step
+    }
+
+    /// The network as it is, for a plain device.
+    pub fn model(&self) -> UNet {
+        self.model.valid()
+    }
+
+    /// Trains to the end, or until `progress` says `false`; leaves a checkpoint in both cases.
+    ///
+    /// # Errors
+    /// [`Error::Train`] when the loss is no longer a number; whatever writing says.
+    pub fn run(&mut self, mut progress: impl FnMut(&Progress) -> bool) -> Result<()> {
+        let plain = self.device.clone().inner();
+        let validator = Validator::new(&self.config);
+        let feed = batches(&self.config, self.state.step..self.config.steps);
+        let mut saved = Instant::now();
+        while self.state.step < self.config.steps {
+            let begin = Instant::now();
+            let sample = feed.recv().map_err(|_| Error::Train { reason: "the data generator stopped".into() })?;
+            let batch = Batch::new(sample, self.config.batch, self.config.crop, &self.device);
+            self.optimise(&batch)?;
+            let done = self.state.step;
+            let due = done.is_multiple_of(self.config.validate_every) || done == self.config.steps;
+            let validation = due.then(|| validator.run(&self.model.valid(), &plain));
+            self.state.seconds += begin.elapsed().as_secs_f64();
+            let report = self.report(validation);
+            if let Some(validation) = validation {
+                self.keep(&report, &validation)?;
+            }
+            let go_on = progress(&report) && !self.is_stale();
+            let finished = !go_on || done == self.config.steps;
+            if finished || saved.elapsed().as_secs() >= self.config.checkpoint_seconds {
+                checkpoint::save(&self.dir, &self.config, &self.state, &self.model, &self.optimizer)?;
+                saved = Instant::now();
+            }
+            if !go_on {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// One step of Adam.
+    fn optimise(&mut self, batch: &Batch) -> Result<()> {
+        let loss = Loss::new(self.model.forward(batch.input.clone()), batch);
+        let total = loss.total(&self.config);
+        let parts = [total.clone(), loss.alignment, loss.angle, loss.smoothness].map(|t| t.into_scalar::<f64>());
+        if !parts[0].is_finite() {
+            let reason = format!("the loss at step {} is not a number; try a lower rate", self.state.step);
+            return Err(Error::Train { reason });
+        }
+        let gradients = GradientsParams::from_grads(total.backward(), &self.model);
+        let rate = self.config.rate_at(self.state.step);
+        self.model = self.optimizer.step(rate, self.model.clone(), gradients);
+        self.state.step += 1;
+        let (sums, n) = &mut self.state.sums;
+        sums.iter_mut().zip(parts).for_each(|(s, p)| *s += p);
+        *n += 1;
+        Ok(())
+    }
+
+    fn report(&self, validation: Option<Validation>) -> Progress {
+        let (sums, n) = self.state.sums;
+        Progress {
+            step: self.state.step,
+            steps: self.config.steps,
+            loss: sums.map(|s| s / n.max(1) as f64),
+            seconds: self.state.seconds,
+            validation,
+        }
+    }
+
+    fn is_stale(&self) -> bool {
+        self.config.patience > 0 && self.state.stale >= self.config.patience
+    }
+
+    /// Writes a line of metrics, and the weights if they are the best so far; `last.bpk` is always written.
+    fn keep(&mut self, report: &Progress, validation: &Validation) -> Result<()> {
+        self.state.sums = Default::default();
+        let model = self.model.valid();
+        unet::save(&self.dir.join("last.bpk"), &self.config.network, &model)?;
+        self.state.stale += 1;
+        if self.state.best.is_none_or(|best| validation.score() < best) {
+            self.state.best = Some(validation.score());
+            self.state.stale = 0;
+            unet::save(&self.dir.join("best.bpk"), &self.config.network, &model)?;
+        }
+        let path = self.dir.join("metrics.csv");
+        append_metrics(&path, report, validation).map_err(|cause| Error::Write { path, cause })
+    }
+}
+
+fn append_metrics(path: &Path, report: &Progress, validation: &Validation) -> std::io::Result<()> {
+    let fresh = !path.exists();
+    let mut file = OpenOptions::new().create(true).append(true).open(path)?;
+    if fresh {
+        writeln!(
+            file,
+            "step,seconds,loss,alignment,angle_deg,smoothness,clean_ink_deg,clean_junction_deg,clean_mse,\
+             scan_ink_deg,scan_junction_deg,scan_mse"
+        )?;
+    }
+    let [loss, alignment, angle, smoothness] = report.loss;
+    let (c, s) = (&validation.clean, &validation.scan);
+    writeln!(
+        file,
+        "{},{:.0},{loss:.6},{alignment:.6},{:.4},{smoothness:.6},{:.4},{:.4},{:.6},{:.4},{:.4},{:.6}",
+        report.step,
+        report.seconds,
+        angle.to_degrees(),
+        c.ink,
+        c.junction,
+        c.mse,
+        s.ink,
+        s.junction,
+        s.mse
+    )
+}
+
+/// Trains from start to end in a directory; see [`Trainer`].
+///
+/// # Errors
+/// As [`Trainer::new`] and [`Trainer::run`].
+pub fn train(
+    config: TrainConfig,
+    dir: &Path,
+    device: &Device,
+    progress: impl FnMut(&Progress) -> bool,
+) -> Result<UNet> {
+    let mut trainer = Trainer::new(config, dir, device, true, None)?;
+    trainer.run(progress)?;
+    Ok(trainer.model())
+}

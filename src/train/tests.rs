@@ -1,0 +1,152 @@
+//! Training of a very small network.
+
+use super::*;
+use crate::unet::{Input, UNet, UNetConfig};
+use burn::store::{BurnpackStore, ModuleSnapshot};
+use burn::tensor::{Device, Tensor};
+
+fn tiny() -> TrainConfig {
+    TrainConfig {
+        steps: 6,
+        batch: 4,
+        crop: 16,
+        sheet: 32,
+        crops_a_sheet: 2,
+        warmup: 2,
+        validate_every: 3,
+        validation_sheets: 2,
+        network: UNetConfig { width: 4, levels: 1, patch: 2, input: Input::Tensor },
+        ..TrainConfig::default()
+    }
+}
+
+/// The weights by name, as bytes.
+fn numbers(model: &UNet) -> Vec<(String, Vec<u8>)> {
+    let mut store = BurnpackStore::from_bytes(None);
+    model.save_into(&mut store).unwrap();
+    let reader = burn::store::burn_pack::Reader::from_bytes(store.get_bytes().unwrap()).unwrap();
+    let parts = reader.into_tensors().unwrap().into_iter().map(|t| t.into_parts().unwrap());
+    let mut all: Vec<_> = parts.map(|(name, _, _, _, bytes)| (name, bytes.to_vec())).collect();
+    all.sort();
+    all
+}
+
+/// Names of the weights that differ.
+fn differing(a: &UNet, b: &UNet) -> Vec<String> {
+    let pairs = numbers(a).into_iter().zip(numbers(b));
+    pairs.filter(|(a, b)| a != b).map(|(a, _)| a.0).collect()
+}
+
+#[test]
+fn a_resumed_run_ends_where_an_unbroken_one_does() {
+    let [whole, broken, again] = [0, 1, 2].map(|_| tempfile::tempdir().unwrap());
+    let device = Device::flex();
+    let mut seen = 0;
+    let unbroken = train(tiny(), whole.path(), &device, |_| {
+        seen += 1;
+        true
+    });
+    assert_eq!(seen, 6);
+    let mut first = Trainer::new(tiny(), broken.path(), &device, true, None).unwrap();
+    first.run(|p| p.step < 4).unwrap();
+    assert_eq!(first.step(), 4);
+    let mut second = Trainer::new(tiny(), broken.path(), &device, true, None).unwrap();
+    assert_eq!(second.step(), 4);
+    second.run(|_| true).unwrap();
+    let again = train(tiny(), again.path(), &device, |_| true);
+    assert_eq!(differing(&again.unwrap(), unbroken.as_ref().unwrap()), [""; 0], "a run does not repeat");
+    assert_eq!(differing(&second.model(), &unbroken.unwrap()), [""; 0]);
+    let csv = |dir: &tempfile::TempDir| std::fs::read_to_string(dir.path().join("metrics.csv")).unwrap();
+    let without_seconds = |text: String| -> Vec<String> {
+        text.lines().map(|l| l.split(',').enumerate().filter(|(i, _)| *i != 1).map(|(_, v)| v).collect()).collect()
+    };
+    assert_eq!(without_seconds(csv(&whole)), without_seconds(csv(&broken)));
+    assert!(whole.path().join("best.bpk").is_file() && whole.path().join("last.bpk").is_file());
+}
+
+#[test]
+fn a_checkpoint_of_another_configuration_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let device = Device::flex();
+    train(TrainConfig { steps: 1, ..tiny() }, dir.path(), &device, |_| true).unwrap();
+    let error = train(tiny(), dir.path(), &device, |_| true).unwrap_err();
+    assert!(error.to_string().contains("another configuration"), "{error}");
+}
+
+#[test]
+fn training_on_one_batch_makes_the_loss_small() {
+    let config = TrainConfig { angle: 0.0, gamma: 0.0, ..tiny() };
+    let device = Device::flex().autodiff();
+    let batch = Batch::new(batch(&config, 0), config.batch, config.crop, &device);
+    let mut model = config.network.init(&device, 1);
+    let mut optimizer = burn::optim::AdamConfig::new().with_epsilon(1e-8).init();
+    let mut losses = Vec::new();
+    for _ in 0..60 {
+        let total = Loss::new(model.forward(batch.input.clone()), &batch).total(&config);
+        losses.push(total.clone().into_scalar::<f32>());
+        let gradients = burn::optim::GradientsParams::from_grads(total.backward(), &model);
+        model = optimizer.step(1e-2, model, gradients);
+    }
+    assert!(losses[59] < 0.5 * losses[0], "{} {}", losses[0], losses[59]);
+}
+
+#[test]
+fn the_loss_of_the_truth_is_nothing() {
+    let config = TrainConfig { network: UNetConfig { input: Input::Ink, ..tiny().network }, ..tiny() };
+    let device = Device::flex();
+    let sample = batch(&config, 0);
+    let shape = [config.batch, 4, config.crop, config.crop];
+    let field = Tensor::from_data(burn::tensor::TensorData::new(sample.target.clone(), shape), &device);
+    let batch = Batch::new(sample, config.batch, config.crop, &device);
+    let loss = Loss::new(field.clone(), &batch);
+    assert!(loss.alignment.into_scalar::<f32>() < 1e-9);
+    // The angle is to the field before smoothing.
+    assert!(loss.angle.into_scalar::<f32>() < 0.1);
+    assert!(Loss::new(field + 0.1, &batch).alignment.into_scalar::<f32>() > 0.03);
+}
+
+#[test]
+fn batches_come_in_order_and_repeat() {
+    let config = tiny();
+    let received: Vec<Sample> = batches(&config, 2..5).iter().collect();
+    assert_eq!(received.len(), 3);
+    assert_eq!(received[1].input, batch(&config, 3).input);
+    assert_ne!(received[0].target, received[1].target);
+}
+
+#[test]
+fn configurations_that_cannot_work_are_named() {
+    let refused = |config: TrainConfig, word: &str| {
+        let error = config.validate().unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    };
+    refused(TrainConfig { crop: 30, ..tiny() }, "crop");
+    refused(TrainConfig { batch: 5, ..tiny() }, "batch");
+    refused(TrainConfig { rate: 0.0, ..tiny() }, "rate");
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("run.toml");
+    std::fs::write(&path, "stepz = 4").unwrap();
+    let error = TrainConfig::read(&path).unwrap_err().to_string();
+    assert!(error.contains("run.toml") && error.contains("stepz"), "{error}");
+    std::fs::write(&path, "steps = 4\n[network]\nwidth = 8").unwrap();
+    let config = TrainConfig::read(&path).unwrap();
+    assert_eq!((config.steps, config.network.width, config.batch), (4, 8, TrainConfig::default().batch));
+}
+
+#[test]
+fn saved_weights_give_the_same_field_in_half_precision() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("w.bpk");
+    let config = tiny().network;
+    let device = Device::flex();
+    let model = config.init(&device, 5);
+    crate::unet::save(&path, &config, &model).unwrap();
+    let loaded = crate::unet::load(&path, &device).unwrap();
+    assert_eq!(loaded.config, config);
+    let x = Tensor::random([1, config.input.channels(), 8, 8], burn::tensor::Distribution::Default, &device);
+    let difference = (model.forward(x.clone()) - loaded.model.forward(x)).abs().max().into_scalar::<f32>();
+    assert!(difference < 1e-2, "{difference}");
+    std::fs::write(&path, "nothing").unwrap();
+    let error = crate::unet::load(&path, &device).unwrap_err().to_string();
+    assert!(error.contains("w.bpk"), "{error}");
+}
