@@ -9,7 +9,7 @@ use std::time::Instant;
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
-fn main() -> anyhow::Result<()> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().collect();
     let config = TrainConfig::read(Path::new(&args[1]))?;
     let dir = Path::new(&args[2]);
@@ -56,8 +56,8 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The field of an image: WEIGHTS (or `tensor`) IMAGE OUT.npz.
-fn field(weights: &Path, input: &Path, out: &Path) -> anyhow::Result<()> {
+/// The field of an image: WEIGHTS (or `built-in`, or `tensor`) IMAGE OUT.npz.
+fn field(weights: &Path, input: &Path, out: &Path) -> Result<(), Box<dyn std::error::Error>> {
     use fieldtrace::estimate::{FieldEstimator, StructureTensor, UNet};
     use fieldtrace::options::Options;
     let scan = fieldtrace::load::load(input, &Default::default())?.scan;
@@ -66,6 +66,7 @@ fn field(weights: &Path, input: &Path, out: &Path) -> anyhow::Result<()> {
     let image = fieldtrace::clean::clean(&scan, &Options::default());
     let cleaned = t.elapsed();
     let net: Box<dyn FieldEstimator> = match weights.to_str() {
+        Some("built-in") => Box::new(UNet::built_in()?),
         Some("tensor") => Box::new(StructureTensor::default()),
         _ if std::env::var_os("BURN").is_some() => {
             let device = burn::tensor::Device::flex();
@@ -86,7 +87,7 @@ fn field(weights: &Path, input: &Path, out: &Path) -> anyhow::Result<()> {
 }
 
 /// Pictures of synthetic data: render, scan, ink.
-fn look(dir: &Path) -> anyhow::Result<()> {
+fn look(dir: &Path) -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(dir)?;
     for seed in 0..12u64 {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);

@@ -3,6 +3,7 @@
 use super::PolyVectorField;
 use npyz::WriterBuilder;
 use npyz::npz::NpzWriter;
+use npyz::zip::CompressionMethod;
 use npyz::zip::write::FileOptions;
 use std::io::{self, Seek, Write};
 
@@ -16,11 +17,16 @@ pub fn write_npz(field: &PolyVectorField, out: impl Write + Seek) -> io::Result<
     let shape = [height as u64, width as u64];
     let mut archive = NpzWriter::new(out);
     for (name, coefficient) in [("c0", field.c0()), ("c2", field.c2())] {
-        let mut array = archive.array(name, FileOptions::default())?.default_dtype().shape(&shape).begin_nd()?;
+        let mut array = archive.array(name, uncompressed())?.default_dtype().shape(&shape).begin_nd()?;
         array.extend(coefficient.data())?;
         array.finish()?;
     }
-    let mut array = archive.array("mask", FileOptions::default())?.default_dtype().shape(&shape).begin_nd()?;
+    let mut array = archive.array("mask", uncompressed())?.default_dtype().shape(&shape).begin_nd()?;
     array.extend(field.confidence().data().iter().map(|&c| u8::from(c > 0.0)))?;
     array.finish()
+}
+
+/// Coefficients hardly compress, and readers map stored arrays.
+fn uncompressed() -> FileOptions {
+    FileOptions::default().compression_method(CompressionMethod::Stored)
 }

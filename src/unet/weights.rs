@@ -69,3 +69,14 @@ fn load_from(name: &str, reader: &Reader, store: BurnpackStore, device: &Device)
 fn failed(name: &str, cause: impl std::fmt::Display) -> Error {
     Error::Weights { input: name.to_owned(), reason: cause.to_string() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_built_in_weights_can_be_read() {
+        let weights = built_in(&Device::flex()).unwrap();
+        assert_eq!(weights.config, UNetConfig::default());
+    }
+}
