@@ -28,7 +28,7 @@ pub struct LineImage {
     pub ink: Raster<f32>,
     /// The pixels that count as ink of lines; solid regions are not among them.
     pub mask: Mask,
-    /// Half line width at each mask pixel's nearest edge: distance to the nearest paper pixel centre.
+    /// Distance of each mask pixel's centre to the nearest paper pixel's centre; 0 off the mask.
     pub depth: Raster<f32>,
     /// Typical line width in pixels of this raster.
     pub line_width: f64,

@@ -3,6 +3,7 @@
 use super::smooth;
 use crate::options::Threshold;
 use crate::raster::{Mask, Raster};
+use image::{GrayImage, Luma};
 use imageproc::contrast::otsu_level;
 use imageproc::morphology::Mask as Structure;
 use imageproc::morphology::grayscale_dilate;
@@ -30,12 +31,12 @@ pub(super) fn grain(ink: &Raster<f32>) -> f64 {
     for y in (0..ink.height()).step_by(3) {
         steps.extend(ink.row(y).windows(2).step_by(2).map(|w| (w[1] - w[0]).abs()));
     }
-    let middle = steps.len() / 2;
-    // 1.4826 / sqrt(2): the normal law's factor for differences of neighbours.
     if steps.is_empty() {
         return LEAST_GRAIN;
     }
+    let middle = steps.len() / 2;
     let median = *steps.select_nth_unstable_by(middle, f32::total_cmp).1;
+    // 1.4826 / sqrt(2): the normal law's factor for differences of neighbours.
     (1.05 * f64::from(median)).max(LEAST_GRAIN)
 }
 
@@ -73,16 +74,20 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold) -> (R
     (ink, mask)
 }
 
+/// The ink in 256 steps.
+fn in_bytes(ink: &Raster<f32>) -> GrayImage {
+    GrayImage::from_fn(ink.width() as u32, ink.height() as u32, |x, y| {
+        Luma([(ink[(x as usize, y as usize)] * 255.0).round() as u8])
+    })
+}
+
 fn scaled(ink: Raster<f32>, core: f32) -> Raster<f32> {
     ink.map(|i| i / core)
 }
 
 /// Otsu's level and the ink of a line's core (an upper quantile above that level); `None` without ink.
 fn global_levels(ink: &Raster<f32>, floor: f32) -> Option<(f32, f32)> {
-    let bytes = image::GrayImage::from_fn(ink.width() as u32, ink.height() as u32, |x, y| {
-        image::Luma([(ink[(x as usize, y as usize)] * 255.0).round() as u8])
-    });
-    let otsu = (f32::from(otsu_level(&bytes)) / 255.0).max(floor);
+    let otsu = (f32::from(otsu_level(&in_bytes(ink))) / 255.0).max(floor);
     let mut above: Vec<f32> = ink.data().iter().copied().filter(|&i| i > otsu).collect();
     if above.is_empty() {
         return None;
@@ -94,10 +99,7 @@ fn global_levels(ink: &Raster<f32>, floor: f32) -> Option<(f32, f32)> {
 
 /// The darkest ink within a few pixels of each place, smoothed, and no less than `floor`.
 fn nearby_core(ink: &Raster<f32>, floor: f32) -> Raster<f32> {
-    let bytes = image::GrayImage::from_fn(ink.width() as u32, ink.height() as u32, |x, y| {
-        image::Luma([(ink[(x as usize, y as usize)] * 255.0).round() as u8])
-    });
-    let dilated = grayscale_dilate(&bytes, &Structure::square(6));
+    let dilated = grayscale_dilate(&in_bytes(ink), &Structure::square(6));
     let core = Raster::from_fn(ink.width(), ink.height(), |x, y| {
         (f32::from(dilated.get_pixel(x as u32, y as u32)[0]) / 255.0).max(floor)
     });

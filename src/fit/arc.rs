@@ -13,6 +13,18 @@ pub(super) struct FittedCircle {
     pub error: f64,
 }
 
+impl FittedCircle {
+    /// The point of the circle nearest to `p`.
+    pub fn foot(&self, p: Point) -> Point {
+        self.centre + (p - self.centre).normalize() * self.radius
+    }
+
+    /// Unit tangent at the point nearest to `p`, turning from x towards y.
+    pub fn tangent(&self, p: Point) -> Vec2 {
+        (p - self.centre).normalize().turn_90()
+    }
+}
+
 /// The circle with the least weighted sum of squared algebraic distances to samples `from..=to`: minimises
 /// `sum w (z + A x + B y + C)^2` with `z = x^2 + y^2`. `None` when the samples lie on a line.
 pub(super) fn fit_circle(samples: &Samples, from: usize, to: usize) -> Option<FittedCircle> {
@@ -50,7 +62,7 @@ pub(super) fn fit_circle(samples: &Samples, from: usize, to: usize) -> Option<Fi
 /// straight line.
 pub(super) fn arc_from_tangent(start: Point, tangent: Vec2, end: Point) -> Option<Arc> {
     let chord = end - start;
-    let normal = Vec2::new(-tangent.y, tangent.x);
+    let normal = tangent.turn_90();
     let height = chord.dot(normal);
     if height.abs() < 1e-6 * chord.hypot().max(1e-9) {
         return None;
@@ -68,7 +80,7 @@ pub(super) fn arc_from_tangent(start: Point, tangent: Vec2, end: Point) -> Optio
 /// Unit tangent at the end of an arc, in drawing direction.
 pub(super) fn end_tangent(arc: &Arc) -> Vec2 {
     let radial = Vec2::from_angle(arc.start_angle + arc.sweep_angle);
-    Vec2::new(-radial.y, radial.x) * arc.sweep_angle.signum()
+    radial.turn_90() * arc.sweep_angle.signum()
 }
 
 #[cfg(test)]

@@ -121,7 +121,7 @@ fn solve(
         [(ends.start_tangent, ends.start), (ends.end_tangent, ends.end)].into_iter().enumerate()
     {
         if let Some(t) = tangent {
-            let n = Vec2::new(-t.y, t.x);
+            let n = t.turn_90();
             let (stiff, offset) = (1e6 * scale, n.dot(anchor.to_vec2()));
             let (x, y) = (2 * i, 2 * i + 1);
             system[x][x] += stiff * n.x * n.x;

@@ -148,13 +148,9 @@ fn draft(samples: &Samples, piece: Piece, tolerance: Tolerance) -> Draft {
         Kind::Arc | Kind::Cubic => {
             let circle = if piece.kind == Kind::Arc { fit_circle(samples, from, to) } else { None };
             if let Some(circle) = circle {
-                let foot = |p: Point| circle.centre + (p - circle.centre).normalize() * circle.radius;
                 let turn = (start - circle.centre).cross(samples.points[(from + to) / 2] - circle.centre).signum();
-                let tangent = |p: Point| {
-                    let radial = (p - circle.centre).normalize();
-                    Vec2::new(-radial.y, radial.x) * turn
-                };
-                let (start, end) = (foot(start), foot(end));
+                let tangent = |p: Point| circle.tangent(p) * turn;
+                let (start, end) = (circle.foot(start), circle.foot(end));
                 let (start_tangent, end_tangent) = (tangent(start), tangent(end));
                 return Draft { piece, start, end, start_tangent, end_tangent, on_line: start };
             }
@@ -254,9 +250,8 @@ fn segments(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance:
     for k in 1..count {
         let at = samples.arc[piece.from] + length * k as f64 / count as f64;
         let index = samples.arc.partition_point(|&a| a < at);
-        let radial = (samples.points[index] - circle.centre).normalize();
-        let tangent = Vec2::new(-radial.y, radial.x) * turn;
-        bounds.push((index, Joint { point: circle.centre + radial * circle.radius, tangent: Some(tangent) }));
+        let p = samples.points[index];
+        bounds.push((index, Joint { point: circle.foot(p), tangent: Some(circle.tangent(p) * turn) }));
     }
     bounds.push((piece.to, to));
     let pairs = bounds.windows(2);

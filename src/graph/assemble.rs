@@ -1,12 +1,12 @@
 //! The graph from resolved lines.
 
-use super::contacts::{LineIndex, Place, direction, piece_count};
+use super::contacts::{LineIndex, Place, around, direction, piece_count};
 use super::ends::{End, end_id};
 use super::nodes::Node;
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::options::Options;
-use crate::streamline::{STEP, Stop, Streamline};
+use crate::streamline::{STEP, Streamline};
 use kurbo::{Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use rstar::RTree;
@@ -259,14 +259,8 @@ impl<'a> Assembly<'a> {
 
 /// Forgets the widths of a line within `reach` pixels along it from a place: there they tell of another line too.
 fn blank(line: &mut Streamline, at: f64, reach: f64) {
-    let n = line.points.len() as i64;
-    let (at, span) = (at.round() as i64, (reach / STEP) as i64);
-    for k in at - span..=at + span {
-        let k = if line.closed { k.rem_euclid(n) } else { k };
-        if (0..n).contains(&k) {
-            line.widths[k as usize] = f64::NAN;
-        }
-    }
+    let indices: Vec<usize> = around(line, at, reach).collect();
+    indices.into_iter().for_each(|k| line.widths[k] = f64::NAN);
 }
 
 fn length(points: &[Point]) -> f64 {
@@ -306,7 +300,7 @@ fn kept(image: &LineImage, line: &Streamline, end: &End, node: &Node) -> usize {
     let n = line.points.len();
     let at = |k: usize| line.points[if end.side == 0 { k } else { n - 1 - k }];
     let is_free = node.ends.len() == 1 && node.bodies.is_empty();
-    if is_free && matches!(end.stop, Stop::Border | Stop::Solid) {
+    if is_free && end.stop.is_cut_off() {
         return 1;
     }
     // The place on the last stretch that comes nearest to the node.

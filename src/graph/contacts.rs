@@ -127,6 +127,14 @@ pub(super) fn point_at(line: &Streamline, at: f64) -> Point {
     line.points[k % n].lerp(line.points[(k + 1).min(if line.closed { k + 1 } else { n - 1 }) % n], at - at.floor())
 }
 
+/// Indices of the points within `reach` pixels along a line from a fractional index.
+pub(super) fn around(line: &Streamline, at: f64, reach: f64) -> impl Iterator<Item = usize> {
+    let (n, closed) = (line.points.len() as i64, line.closed);
+    let (at, span) = (at.round() as i64, (reach / STEP) as i64);
+    let indices = (at - span..=at + span).map(move |k| if closed { k.rem_euclid(n) } else { k });
+    indices.filter(move |k| (0..n).contains(k)).map(|k| k as usize)
+}
+
 /// Direction of a line at a place.
 pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
     let line = &lines[place.line];
@@ -159,7 +167,7 @@ struct Finder<'a> {
 
 impl Finder<'_> {
     fn of_end(&self, end: &End) -> Vec<Contact> {
-        if matches!(end.stop, Stop::Border | Stop::Solid) {
+        if end.stop.is_cut_off() {
             return Vec::new();
         }
         let mut contacts = self.crossed(end);

@@ -1,6 +1,6 @@
 //! Ends that belong together become one node; its place is solved from its arms.
 
-use super::contacts::{Contact, Place, Touch, direction, point_at};
+use super::contacts::{Contact, Place, Touch, around, direction, point_at};
 use super::ends::{End, end_id};
 use crate::clean::{LineImage, unblurred_width};
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
@@ -140,16 +140,16 @@ impl Solver<'_> {
 
     /// Least squares over the lines of all arms, drawn towards the mean of the observed contacts.
     fn meeting_point(&self, ends: &[usize], bodies: &[Place], contacts: &[&Contact]) -> Point {
-        let observed: Vec<Point> = if contacts.is_empty() {
-            ends.iter().map(|&e| self.free_end(self.end(e))).collect()
-        } else {
-            contacts.iter().map(|c| c.point).collect()
-        };
         if let ([end], [body]) = (ends, bodies)
             && self.end(*end).stop == Stop::Merged
         {
             return self.merge_point(self.end(*end), *body);
         }
+        let observed: Vec<Point> = if contacts.is_empty() {
+            ends.iter().map(|&e| self.free_end(self.end(e))).collect()
+        } else {
+            contacts.iter().map(|c| c.point).collect()
+        };
         let centre = mean(&observed);
         let mut arms: Vec<(Point, Vec2)> =
             ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
@@ -171,8 +171,8 @@ impl Solver<'_> {
     fn merge_point(&self, end: &End, body: Place) -> Point {
         let (foot, d) = (point_at(&self.lines[body.line], body.at), direction(self.lines, body));
         let tail = end.tail;
-        let across = Vec2::new(-d.y, d.x);
-        let normal = Vec2::new(-tail.heading.y, tail.heading.x);
+        let across = d.turn_90();
+        let normal = tail.heading.turn_90();
         // Distance from the body along the tail's parabola: c + b s + a s^2.
         let c = (tail.point - foot).dot(across);
         let (b, a) = (tail.heading.dot(across), 0.5 * tail.curvature * normal.dot(across));
@@ -190,7 +190,7 @@ impl Solver<'_> {
         let at = |k: usize| self.lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
         let d = at(0) - at((n - 1).min(3));
         let heading = if d.hypot() > 1e-9 { d.normalize() } else { end.tail.heading };
-        if matches!(end.stop, Stop::Border | Stop::Solid) {
+        if end.stop.is_cut_off() {
             return end.point;
         }
         let width = unblurred_width(end.width, self.image.blur);
@@ -254,7 +254,7 @@ fn near_side_of_gap(ink: impl Fn(f64) -> f32) -> f64 {
 
 /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
 fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
-    let normal = Vec2::new(-tail.heading.y, tail.heading.x);
+    let normal = tail.heading.turn_90();
     let s = (towards - tail.point).dot(tail.heading).clamp(0.0, 5.0 * line_width);
     let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
     let d = tail.heading + normal * (tail.curvature * s);
@@ -272,13 +272,8 @@ pub(super) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f6
 
 /// The point of a line nearest to `p`, among those within `reach` pixels along it from a place.
 fn nearest_on(line: &Streamline, place: Place, p: Point, reach: f64) -> Point {
-    let n = line.points.len() as i64;
-    let (at, span) = (place.at.round() as i64, (reach / STEP) as i64);
-    let indices = (at - span..=at + span).filter_map(|k| {
-        let k = if line.closed { k.rem_euclid(n) } else { k };
-        (0..n).contains(&k).then_some(line.points[k.clamp(0, n - 1) as usize])
-    });
-    indices.min_by(|a, b| (*a - p).hypot2().total_cmp(&(*b - p).hypot2())).unwrap_or(p)
+    let points = around(line, place.at, reach).map(|k| line.points[k]);
+    points.min_by(|a, b| (*a - p).hypot2().total_cmp(&(*b - p).hypot2())).unwrap_or(p)
 }
 
 fn mean(points: &[Point]) -> Point {
@@ -291,7 +286,7 @@ fn mean(points: &[Point]) -> Point {
 fn intersect_lines(lines: &[(Point, Vec2)], centre: Point, prior: f64) -> Point {
     let (mut a, mut b, mut c, mut r) = (prior, 0.0, prior, Vec2::ZERO);
     for (p, d) in lines {
-        let n = Vec2::new(-d.y, d.x);
+        let n = d.turn_90();
         let distance = n.dot(*p - centre);
         (a, b, c) = (a + n.x * n.x, b + n.x * n.y, c + n.y * n.y);
         r += n * distance;

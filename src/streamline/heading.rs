@@ -24,7 +24,7 @@ impl Tail {
             return None;
         }
         let along = (last - first) / length;
-        let across = Vec2::new(-along.y, along.x);
+        let across = along.turn_90();
         let n = points.len() as f64;
         // Coordinates in [-1, 1] about the middle of the chord.
         let half = 0.5 * length;
@@ -59,8 +59,7 @@ impl Tail {
 
 /// A unit vector turned by an angle in radians, from x towards y.
 pub(crate) fn turned(v: Vec2, angle: f64) -> Vec2 {
-    let (sin, cos) = angle.sin_cos();
-    Vec2::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos)
+    v.rotate_scale(Vec2::from_angle(angle))
 }
 
 /// Signed angle from one direction to another, in `(-pi, pi]`.

@@ -34,6 +34,13 @@ pub enum Stop {
     Cut,
 }
 
+impl Stop {
+    /// Whether the line itself goes on, out of the image or under a solid region: there its end is no pen's end.
+    pub(crate) fn is_cut_off(self) -> bool {
+        matches!(self, Self::Border | Self::Solid)
+    }
+}
+
 /// A traced centreline: points about half a pixel apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Streamline {

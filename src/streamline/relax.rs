@@ -32,7 +32,7 @@ pub(super) fn relax(image: &LineImage, line: &mut Streamline, width: f64) {
 fn correction(image: &LineImage, line: &Streamline, k: usize, width: f64) -> (Vec2, f64) {
     let span = ((0.5 * width / STEP) as usize).max(2);
     let tangent = tangent(line, k, span);
-    let normal = Vec2::new(-tangent.y, tangent.x);
+    let normal = tangent.turn_90();
     let Some(profile) = cross_profile(&image.ink, line.points[k], normal, 0.85 * width + 1.0) else {
         return (Vec2::ZERO, f64::NAN);
     };

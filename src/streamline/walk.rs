@@ -32,7 +32,7 @@ const END_NOISY: f32 = 0.5;
 /// How far around a point a clean line must be whole, in pixels.
 const WHOLE: f64 = 1.0;
 
-/// A walk's last point that sat on a single line, and what came after it.
+/// A point of a walk.
 struct Step {
     point: Point,
     heading: Vec2,
@@ -65,7 +65,7 @@ impl<'a> Walker<'a> {
 
     /// The streamline through a seed.
     pub fn trace(&mut self, seed: &Seed) -> Streamline {
-        let normal = Vec2::new(-seed.tangent.y, seed.tangent.x);
+        let normal = seed.tangent.turn_90();
         let mut start = seed.point;
         let depth = f64::from(self.image.depth.at(seed.point).unwrap_or(1.0));
         let profile = cross_profile(&self.image.ink, start, normal, 1.5 * depth + 2.0);
@@ -174,7 +174,7 @@ impl<'a> Walker<'a> {
         let here = &steps[steps.len() - 1];
         let heading = self.next_heading(steps, coasting);
         let mut point = here.point + heading * STEP;
-        let normal = Vec2::new(-heading.y, heading.x);
+        let normal = heading.turn_90();
         let inked = if self.image.noise > 0.0 {
             self.image.ink.sample(point) >= END_NOISY * self.core
         } else {
@@ -235,7 +235,7 @@ impl<'a> Walker<'a> {
         if self.image.noise == 0.0 {
             return None;
         }
-        let normal = Vec2::new(-heading.y, heading.x);
+        let normal = heading.turn_90();
         let reach = BREAK * self.width;
         let mut distance = STEP;
         while distance < reach {
