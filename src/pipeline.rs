@@ -22,8 +22,16 @@ impl Vectorizer {
     /// # Errors
     /// [`Error::Option`] when an option is out of its range.
     pub fn new(options: Options) -> Result<Self> {
+        Self::with(options, default_estimator()?)
+    }
+
+    /// A vectorizer with some source of fields.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when an option is out of its range.
+    pub fn with(options: Options, estimator: Box<dyn FieldEstimator>) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, estimator: default_estimator()? })
+        Ok(Self { options, estimator })
     }
 
     /// The same with another source of fields.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::field::{PolyVectorField, decode};
 use crate::raster::{Mask, Raster};
 use crate::unet::engine::{Engine, Scratch, TileCells};
-use crate::unet::{Features, UNetConfig, Weights, features};
+use crate::unet::{Features, UNetConfig, Weights, features, shown};
 use burn::tensor::{Device, Tensor, TensorData};
 use num_complex::Complex32;
 use rayon::prelude::*;
@@ -76,7 +76,7 @@ impl FieldEstimator for UNet {
 
     fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
         let (width, height) = image.ink.size();
-        let ink = normalised(image);
+        let ink = shown(image);
         let grid = Grid::new(width, height, self.config.multiple());
         let tiles: Vec<(usize, usize)> = grid.tiles().collect();
         let parts: Vec<Vec<Pixel>> = match &self.runner {
@@ -109,23 +109,6 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// A pixel's index in the image with its coefficients.
 type Pixel = (usize, [f32; 4]);
-
-/// The ink with its dark cores at 1: nine tenths of the way up the ink on the mask.
-fn normalised(image: &LineImage) -> Raster<f32> {
-    let mut counts = [0usize; 64];
-    let inked = image.ink.data().iter().zip(image.mask.data()).filter(|(_, m)| **m);
-    inked.for_each(|(i, _)| counts[(i.clamp(0.0, 1.0) * 63.0) as usize] += 1);
-    let mut left = counts.iter().sum::<usize>() / 10;
-    let mut core = 1.0f32;
-    for (bin, &n) in counts.iter().enumerate().rev() {
-        if left < n {
-            core = ((bin as f32 + 0.5) / 63.0).clamp(0.2, 1.0);
-            break;
-        }
-        left -= n;
-    }
-    image.ink.map(|i| (i / core).clamp(0.0, 1.0))
-}
 
 /// How an image is cut into tiles of one size.
 struct Grid {
@@ -249,8 +232,7 @@ impl<'a> Tile<'a> {
 
 fn with_base(mut values: [f32; 4], base: &[f32], n: usize, i: usize) -> [f32; 4] {
     if !base.is_empty() {
-        values[0] += base[i];
-        values[1] += base[n + i];
+        values.iter_mut().enumerate().for_each(|(k, v)| *v += base[k * n + i]);
     }
     values
 }

@@ -2,10 +2,12 @@
 
 mod motifs;
 mod noise;
+mod placed;
 mod scan;
 mod shapes;
 
-pub use scan::{ScanStyle, clean_ink, ink_of_scan, scan, vary_levels};
+pub use placed::placed;
+pub use scan::{ScanStyle, clean_ink, scan};
 
 use crate::drawing::{Centreline, Color, Drawing, Stroke};
 use kurbo::Point;
@@ -19,7 +21,7 @@ struct Style {
     width: f64,
     /// How far single strokes leave it: standard deviation of the logarithm.
     mix: f64,
-    /// How large shapes are, 1 to 2.5.
+    /// How large shapes are, 1 to 5.
     scale: f64,
 }
 
@@ -28,7 +30,7 @@ impl Style {
     fn draw(rng: &mut impl Rng) -> Self {
         let width = if rng.random_bool(0.8) { within(rng, 2.0, 5.0) } else { (within(rng, 0.0, 12f64.ln())).exp() };
         let mix = if rng.random_bool(0.6) { 0.0 } else { 0.35 };
-        let scale = if rng.random_bool(0.4) { 1.0 } else { within(rng, 1.0, 2.5) };
+        let scale = if rng.random_bool(0.3) { 1.0 } else { within(rng, 0.0, 5f64.ln()).exp() };
         Self { width, mix, scale }
     }
 
@@ -74,7 +76,10 @@ pub fn drawing(rng: &mut impl Rng, size: usize) -> Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::clean;
     use crate::ground_truth;
+    use crate::load::Scan;
+    use crate::options::Options;
     use crate::render::render;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
@@ -104,12 +109,15 @@ mod tests {
         for seed in 0..20 {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let drawing = drawing(&mut rng, 128);
-            let clean = render(&drawing);
+            let coverage = render(&drawing);
             let style = ScanStyle::draw(&mut rng);
-            let ink = ink_of_scan(&scan(&mut rng, &clean, &style));
-            assert!(ink.data().iter().all(|i| (0.0..=1.0).contains(i)));
+            let gray = scan(&mut rng, &coverage, &style);
+            let ink = clean::clean(&Scan { gray, rgb: None, dpi: None }, &Options::default()).ink;
+            if ink.size() != coverage.size() {
+                continue;
+            }
             let mean = |on: bool| {
-                let picked = clean.data().iter().zip(ink.data()).filter(|(c, _)| (**c > 0.9) == on);
+                let picked = coverage.data().iter().zip(ink.data()).filter(|(c, _)| (**c > 0.9) == on);
                 let (sum, n) = picked.fold((0.0, 0.0), |(s, n), (_, i)| (s + i, n + 1.0));
                 sum / f32::max(n, 1.0)
             };

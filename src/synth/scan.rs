@@ -1,4 +1,4 @@
-//! From rendered ink to what a scanner or a camera would see, and back to ink as cleaning gives it.
+//! From rendered ink to what a scanner or a camera would see.
 
 use super::noise::{blur, gaussian, smooth, white};
 use super::shapes::within;
@@ -167,23 +167,6 @@ fn binary(gray: &Raster<f32>, style: &ScanStyle) -> Raster<f32> {
     Raster::from_fn(width, height, |x, y| if gray[(x, y)] < level * paper[(x, y)] { 0.0 } else { 1.0 })
 }
 
-/// The ink of a scan, 0 to 1: division by the local paper, then the range from the paper's noise to the ink's core
-/// stretched over 0 to 1.
-pub fn ink_of_scan(gray: &Raster<f32>) -> Raster<f32> {
-    let paper = background(gray);
-    let (width, height) = gray.size();
-    let ink = Raster::from_fn(width, height, |x, y| (1.0 - gray[(x, y)] / paper[(x, y)]).clamp(0.0, 1.0));
-    let core = core_level(&ink);
-    ink.map(|i| (i / core).min(1.0))
-}
-
-/// Varies how cleaning maps ink to 0 to 1: a floor below which there is paper, and a gain.
-pub fn vary_levels(rng: &mut impl Rng, ink: &Raster<f32>) -> Raster<f32> {
-    let floor = if rng.random_bool(0.5) { within(rng, 0.0, 0.25) as f32 } else { 0.0 };
-    let gain = within(rng, 0.85, 1.2) as f32 / (1.0 - floor);
-    ink.map(|i| ((i - floor) * gain).clamp(0.0, 1.0))
-}
-
 /// The ink of a render without noise.
 pub fn clean_ink(rng: &mut impl Rng, ink: &Raster<f32>) -> Raster<f32> {
     match rng.random_range(0..10) {
@@ -191,21 +174,6 @@ pub fn clean_ink(rng: &mut impl Rng, ink: &Raster<f32>) -> Raster<f32> {
         6..8 => blur(ink, within(rng, 0.2, 0.8)),
         _ => ink.map(|i| if i > 0.5 { 1.0 } else { 0.0 }),
     }
-}
-
-/// The level of dark line cores: nine tenths of the way up the ink that is clearly above the noise.
-fn core_level(ink: &Raster<f32>) -> f32 {
-    let mut counts = [0usize; 64];
-    ink.data().iter().for_each(|&i| counts[(i * 63.0) as usize] += 1);
-    let total: usize = counts[13..].iter().sum();
-    let mut left = total / 10;
-    for (bin, &n) in counts.iter().enumerate().rev() {
-        if left < n {
-            return ((bin as f32 + 0.5) / 63.0).max(0.2);
-        }
-        left -= n;
-    }
-    1.0
 }
 
 /// The brightness of the paper around each pixel: the upper quartile of blocks of 32 pixels, interpolated.

@@ -8,7 +8,7 @@ use burn::optim::{ModuleOptimizer, OptimizerRecord};
 use burn::store::{BurnpackStore, ModuleSnapshot};
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What a run remembers beside weights and moments.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -45,18 +45,32 @@ pub fn save(dir: &Path, config: &TrainConfig, state: &State, model: &UNet, optim
     Ok(())
 }
 
+/// The folder of the newest whole checkpoint in a run's directory.
+fn folder(dir: &Path) -> Option<PathBuf> {
+    ["checkpoint", "checkpoint.old"].map(|name| dir.join(name)).into_iter().find(|d| d.join("state.json").is_file())
+}
+
+/// Whether a directory holds a checkpoint.
+pub fn exists(dir: &Path) -> bool {
+    folder(dir).is_some()
+}
+
+/// The configuration and the state of a checkpoint; `None` where the directory holds none.
+pub fn state(dir: &Path) -> Result<Option<(TrainConfig, State)>> {
+    let Some(from) = folder(dir) else { return Ok(None) };
+    let path = from.join("state.json");
+    let input = path.display().to_string();
+    let json = fs::read_to_string(&path).map_err(|cause| Error::Read { input, cause })?;
+    serde_json::from_str(&json).map_err(failed).map(Some)
+}
+
 /// Reads a checkpoint; `None` where the directory holds none.
 pub fn load(
     dir: &Path,
     mut model: UNet,
     optimizer: ModuleOptimizer,
 ) -> Result<Option<(TrainConfig, State, UNet, ModuleOptimizer)>> {
-    let candidates = [dir.join("checkpoint"), dir.join("checkpoint.old")];
-    let Some(from) = candidates.into_iter().find(|d| d.join("state.json").is_file()) else { return Ok(None) };
-    let path = from.join("state.json");
-    let input = path.display().to_string();
-    let json = fs::read_to_string(&path).map_err(|cause| Error::Read { input, cause })?;
-    let (config, state): (TrainConfig, State) = serde_json::from_str(&json).map_err(failed)?;
+    let (Some(from), Some((config, state))) = (folder(dir), state(dir)?) else { return Ok(None) };
     model.load_from(&mut BurnpackStore::from_file(from.join("model.bpk"))).map_err(failed)?;
     let record = OptimizerRecord::load(from.join("optimizer.bpk")).map_err(failed)?;
     let optimizer = optimizer.load_record(record);

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::unet::UNetConfig;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A training run. Everything that decides its result is in here.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,6 +33,10 @@ pub struct TrainConfig {
     pub sheet: usize,
     /// Crops cut from each drawing.
     pub crops_a_sheet: usize,
+    /// A folder of SVG drawings to mix in.
+    pub svgs: Option<PathBuf>,
+    /// Share of the sheets that show one of those.
+    pub svg_share: f64,
     /// Steps between validations.
     pub validate_every: usize,
     /// Drawings to validate on, each as clean and as scan.
@@ -60,6 +64,8 @@ impl Default for TrainConfig {
             scans: 0.65,
             sheet: 144,
             crops_a_sheet: 4,
+            svgs: None,
+            svg_share: 0.5,
             validate_every: 500,
             validation_sheets: 48,
             checkpoint_seconds: 120,
@@ -83,6 +89,15 @@ impl TrainConfig {
         Ok(config)
     }
 
+    /// The configuration of the run in a directory.
+    ///
+    /// # Errors
+    /// [`Error::Train`] where there is none; [`Error::Read`] when it cannot be read.
+    pub fn of_run(dir: &Path) -> Result<Self> {
+        let found = super::checkpoint::state(dir)?.map(|(config, _)| config);
+        found.ok_or_else(|| Error::Train { reason: format!("{}: holds no run to go on with", dir.display()) })
+    }
+
     /// Checks that the numbers fit together.
     ///
     /// # Errors
@@ -101,6 +116,9 @@ impl TrainConfig {
         }
         if self.batch == 0 || self.crops_a_sheet == 0 || !self.batch.is_multiple_of(self.crops_a_sheet) {
             return fail("batch has to be a multiple of crops_a_sheet".into());
+        }
+        if !(0.0..=1.0).contains(&self.svg_share) {
+            return fail("svg_share is between 0 and 1".into());
         }
         if !(0.0..=1.0).contains(&self.scans) || self.rate.is_nan() || self.rate <= 0.0 {
             return fail("scans is between 0 and 1, and rate is positive".into());

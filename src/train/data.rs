@@ -1,17 +1,16 @@
 //! Batches, made while the network trains on the ones before.
 
 use super::config::TrainConfig;
-use crate::drawing::Drawing;
-use crate::ground_truth::{self, FieldTruth, Place};
+use super::source::{Sight, Source, sight};
+use crate::ground_truth::{FieldTruth, Place};
 use crate::raster::Raster;
-use crate::render::render;
-use crate::synth;
 use crate::unet::{Features, Input, features};
 use num_complex::Complex32;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 
@@ -24,18 +23,18 @@ const SHARED: f32 = 2.0;
 /// How much the second direction counts where nothing shows it.
 const UNSEEN: f32 = 0.2;
 
-/// An image with its truth, or a crop of one; planes of `side x side`.
+/// An image with its truth, or a crop of one.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
-    /// Network input, `[channels, side, side]`.
+    /// Network input, `[channels, height, width]`.
     pub input: Vec<f32>,
-    /// The field that the network corrects, `[4, side, side]`.
+    /// The field that the network corrects, `[4, height, width]`.
     pub base: Vec<f32>,
-    /// True `Re c0`, `Im c0`, `Re c2`, `Im c2`, `[4, side, side]`.
+    /// True `Re c0`, `Im c0`, `Re c2`, `Im c2`, `[4, height, width]`.
     pub target: Vec<f32>,
-    /// Squared true directions `Re u^2`, `Im u^2`, `Re v^2`, `Im v^2`, `[4, side, side]`.
+    /// Squared true directions `Re u^2`, `Im u^2`, `Re v^2`, `Im v^2`, `[4, height, width]`.
     pub roots: Vec<f32>,
-    /// Ink 0 or 1, then the weights of `u` and of `v` in the angle, `[3, side, side]`.
+    /// Ink 0 or 1, then the weights of `u` and of `v` in the angle, `[3, height, width]`.
     pub weights: Vec<f32>,
 }
 
@@ -73,12 +72,12 @@ impl Sample {
         Self { input: channels, base, target, roots, weights }
     }
 
-    /// The square `[x, x + crop) x [y, y + crop)` of a `side x side` sample.
-    fn cropped(&mut self, side: usize, x: usize, y: usize, crop: usize) -> Self {
+    /// The square `[x, x + crop) x [y, y + crop)` of a sample of a size.
+    fn cropped(&mut self, (width, height): (usize, usize), x: usize, y: usize, crop: usize) -> Self {
         let mut out = Self::default();
         for (from, to) in self.planes().into_iter().zip(out.planes()) {
-            for plane in from.chunks_exact(side * side) {
-                for row in plane.chunks_exact(side).skip(y).take(crop) {
+            for plane in from.chunks_exact(width * height) {
+                for row in plane.chunks_exact(width).skip(y).take(crop) {
                     to.extend_from_slice(&row[x..x + crop]);
                 }
             }
@@ -102,29 +101,14 @@ fn unit(z: Complex32) -> Complex32 {
     if z.norm() > 1e-6 { z / z.norm() } else { z }
 }
 
-/// The ink that the network sees of a drawing: clean, or scanned and cleaned again.
-pub fn observed(rng: &mut impl Rng, drawing: &Drawing, scanned: bool) -> Raster<f32> {
-    let ink = render(drawing);
-    let seen = if scanned {
-        let style = synth::ScanStyle::draw(rng);
-        synth::ink_of_scan(&synth::scan(rng, &ink, &style))
-    } else {
-        synth::clean_ink(rng, &ink)
-    };
-    synth::vary_levels(rng, &seen)
-}
-
-/// The crops of one synthetic drawing. The same seed and number give the same crops.
-fn crops(config: &TrainConfig, number: u64) -> Vec<Sample> {
+/// The crops of one drawing. The same seed and number give the same crops.
+fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
     let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
     rng.set_stream(number);
-    let drawing = synth::drawing(&mut rng, config.sheet);
-    let scanned = rng.random_bool(config.scans);
-    let ink = observed(&mut rng, &drawing, scanned);
-    let truth = ground_truth::field(&drawing);
+    let Sight { ink, truth } = sight(&mut rng, source, config, |rng| rng.random_bool(config.scans));
     let mut sheet = Sample::new(&ink, &truth, config.network.input);
-    let room = config.sheet - config.crop;
-    let mut spots = || (rng.random_range(0..=room), rng.random_range(0..=room));
+    let (width, height) = ink.size();
+    let mut spots = || (rng.random_range(0..=width - config.crop), rng.random_range(0..=height - config.crop));
     let inked = |x: usize, y: usize| {
         let rows = y..y + config.crop;
         rows.map(|y| truth.ink.row(y)[x..x + config.crop].iter().filter(|i| **i).count()).sum::<usize>()
@@ -134,26 +118,26 @@ fn crops(config: &TrainConfig, number: u64) -> Vec<Sample> {
             // Of a few spots the first with some ink on it.
             let tries: Vec<_> = (0..6).map(|_| spots()).collect();
             let (x, y) = *tries.iter().find(|(x, y)| inked(*x, *y) > 60).unwrap_or(&tries[0]);
-            sheet.cropped(config.sheet, x, y, config.crop)
+            sheet.cropped((width, height), x, y, config.crop)
         })
         .collect()
 }
 
 /// The batch of a step.
-pub fn batch(config: &TrainConfig, step: usize) -> Sample {
+pub fn batch(config: &TrainConfig, source: &Source, step: usize) -> Sample {
     let sheets = (config.batch / config.crops_a_sheet) as u64;
     let first = step as u64 * sheets;
-    let parts: Vec<Vec<Sample>> = (first..first + sheets).into_par_iter().map(|n| crops(config, n)).collect();
+    let parts: Vec<Vec<Sample>> = (first..first + sheets).into_par_iter().map(|n| crops(config, source, n)).collect();
     Sample::stacked(parts.into_iter().flatten())
 }
 
 /// Batches of a range of steps, in order, a few ahead of the reader.
-pub fn batches(config: &TrainConfig, steps: Range<usize>) -> Receiver<Sample> {
+pub fn batches(config: &TrainConfig, source: &Arc<Source>, steps: Range<usize>) -> Receiver<Sample> {
     let (sender, receiver) = sync_channel(4);
-    let config = config.clone();
+    let (config, source) = (config.clone(), source.clone());
     thread::spawn(move || {
         for step in steps {
-            if sender.send(batch(&config, step)).is_err() {
+            if sender.send(batch(&config, &source, step)).is_err() {
                 return;
             }
         }

@@ -2,15 +2,18 @@
 
 mod checkpoint;
 mod config;
+mod curves;
 mod data;
 mod loss;
 mod run;
+mod source;
 #[cfg(test)]
 mod tests;
 mod validate;
 
 pub use config::TrainConfig;
-pub use data::{Sample, batch, batches, observed};
+pub use data::{Sample, batch, batches};
 pub use loss::{Batch, Loss};
-pub use run::{Progress, Trainer, train};
-pub use validate::{AngularError, Validation, Validator, without_network};
+pub use run::{Progress, Start, Trainer};
+pub use source::{Skipped, Source};
+pub use validate::{AngularError, Validation, Validator};

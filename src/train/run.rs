@@ -4,6 +4,7 @@ use super::checkpoint::{self, State};
 use super::config::TrainConfig;
 use super::data::batches;
 use super::loss::{Batch, Loss};
+use super::source::{Skipped, Source};
 use super::validate::{Validation, Validator};
 use crate::error::{Error, Result};
 use crate::unet::{self, UNet};
@@ -13,6 +14,7 @@ use burn::tensor::Device;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What a caller hears while training goes on.
@@ -33,6 +35,8 @@ pub struct Progress {
 /// A run: a network with its optimiser at some step, and the directory that it is kept in.
 pub struct Trainer {
     config: TrainConfig,
+    source: Arc<Source>,
+    skipped: Vec<Skipped>,
     dir: PathBuf,
     device: Device,
     model: UNet,
@@ -40,37 +44,85 @@ pub struct Trainer {
     state: State,
 }
 
+/// Where a run starts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// With fresh weights.
+    Fresh,
+    /// From the weights that the program carries.
+    BuiltIn,
+    /// From the weights in a file.
+    From(PathBuf),
+    /// From the checkpoint in the run's directory.
+    Resume,
+}
+
 impl Trainer {
-    /// A run in a directory: goes on from its checkpoint if `resume` is set and there is one, else starts anew, from
-    /// the weights in `from` where given.
+    /// A run in a directory.
     ///
     /// # Errors
-    /// [`Error::Train`] when the configuration is not sound or the checkpoint is of another one; [`Error::Weights`]
-    /// when `from` does not fit.
-    pub fn new(config: TrainConfig, dir: &Path, device: &Device, resume: bool, from: Option<&Path>) -> Result<Self> {
+    /// [`Error::Train`] when the configuration is not sound, when the directory holds a run already and is not to be
+    /// resumed, or when its checkpoint is missing or of another configuration; [`Error::Weights`] when the weights
+    /// to start from cannot be read.
+    pub fn new(config: TrainConfig, dir: &Path, device: &Device, start: &Start) -> Result<Self> {
         config.validate()?;
-        fs::create_dir_all(dir).map_err(|cause| Error::Write { path: dir.into(), cause })?;
+        let (source, skipped) = match &config.svgs {
+            Some(folder) => Source::with_svgs(folder)?,
+            None => (Source::synthetic(), Vec::new()),
+        };
+        let fail = |reason: String| Err(Error::Train { reason });
         let device = device.clone().autodiff();
-        let fresh = || (config.network.init(&device, config.seed), AdamConfig::new().with_epsilon(1e-8).init());
-        let (mut model, mut optimizer) = fresh();
-        let mut state = State::default();
-        if let Some(path) = from {
-            let weights = unet::load(path, &device)?;
-            if weights.config != config.network {
-                return Err(Error::Train { reason: format!("{}: is a network of another shape", path.display()) });
-            }
-            model = weights.model;
-        }
-        if resume {
-            let (blank, rest) = fresh();
-            if let Some((saved, s, m, o)) = checkpoint::load(dir, blank, rest)? {
-                if saved != config {
-                    return Err(Error::Train { reason: "the checkpoint is of another configuration".into() });
+        let optimizer = || AdamConfig::new().with_epsilon(1e-8).init();
+        let mut run = Self {
+            source: Arc::new(source),
+            skipped,
+            dir: dir.into(),
+            model: config.network.init(&device, config.seed),
+            optimizer: optimizer(),
+            state: State::default(),
+            device: device.clone(),
+            config,
+        };
+        let weights = match start {
+            Start::Resume => {
+                let Some((saved, state, model, moments)) = checkpoint::load(dir, run.model, optimizer())? else {
+                    return fail(format!("{}: holds no run to go on with", dir.display()));
+                };
+                if saved != run.config {
+                    return fail(format!("{}: holds a run of another configuration", dir.display()));
                 }
-                (state, model, optimizer) = (s, m, o);
+                return Ok(Self { state, model, optimizer: moments, ..run });
             }
+            Start::Fresh => None,
+            Start::BuiltIn => Some(unet::built_in(&device)?),
+            Start::From(path) => Some(unet::load(path, &device)?),
+        };
+        if checkpoint::exists(dir) {
+            return fail(format!("{}: holds a run already; resume it or name another folder", dir.display()));
         }
-        Ok(Self { config, dir: dir.into(), device, model, optimizer, state })
+        fs::create_dir_all(dir).map_err(|cause| Error::Write { path: dir.into(), cause })?;
+        if let Some(weights) = weights {
+            if weights.config != run.config.network {
+                return fail("the weights to start from are of a network of another shape".into());
+            }
+            run.model = weights.model;
+        }
+        Ok(run)
+    }
+
+    /// What the run was told.
+    pub fn config(&self) -> &TrainConfig {
+        &self.config
+    }
+
+    /// The drawings that the run draws from.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The SVGs that were left out, and why.
+    pub fn skipped(&self) -> &[Skipped] {
+        &self.skipped
     }
 
     /// Steps done.
@@ -89,8 +141,8 @@ impl Trainer {
     /// [`Error::Train`] when the loss is no longer a number; whatever writing says.
     pub fn run(&mut self, mut progress: impl FnMut(&Progress) -> bool) -> Result<()> {
         let plain = self.device.clone().inner();
-        let validator = Validator::new(&self.config);
-        let feed = batches(&self.config, self.state.step..self.config.steps);
+        let validator = Validator::new(&self.config, &self.source);
+        let feed = batches(&self.config, &self.source, self.state.step..self.config.steps);
         let mut saved = Instant::now();
         while self.state.step < self.config.steps {
             let begin = Instant::now();
@@ -164,7 +216,8 @@ impl Trainer {
             unet::save(&self.dir.join("best.bpk"), &self.config.network, &model)?;
         }
         let path = self.dir.join("metrics.csv");
-        append_metrics(&path, report, validation).map_err(|cause| Error::Write { path, cause })
+        append_metrics(&path, report, validation).map_err(|cause| Error::Write { path: path.clone(), cause })?;
+        super::curves::draw(&path, &self.dir.join("curves.svg"))
     }
 }
 
@@ -193,19 +246,4 @@ fn append_metrics(path: &Path, report: &Progress, validation: &Validation) -> st
         s.junction,
         s.mse
     )
-}
-
-/// Trains from start to end in a directory; see [`Trainer`].
-///
-/// # Errors
-/// As [`Trainer::new`] and [`Trainer::run`].
-pub fn train(
-    config: TrainConfig,
-    dir: &Path,
-    device: &Device,
-    progress: impl FnMut(&Progress) -> bool,
-) -> Result<UNet> {
-    let mut trainer = Trainer::new(config, dir, device, true, None)?;
-    trainer.run(progress)?;
-    Ok(trainer.model())
 }

@@ -4,6 +4,8 @@ use super::*;
 use crate::unet::{Input, UNet, UNetConfig};
 use burn::store::{BurnpackStore, ModuleSnapshot};
 use burn::tensor::{Device, Tensor};
+use std::path::Path;
+use std::sync::Arc;
 
 fn tiny() -> TrainConfig {
     TrainConfig {
@@ -18,6 +20,13 @@ fn tiny() -> TrainConfig {
         network: UNetConfig { width: 4, levels: 1, patch: 2, input: Input::Tensor },
         ..TrainConfig::default()
     }
+}
+
+/// Trains from start to end.
+fn train(config: TrainConfig, dir: &Path, progress: impl FnMut(&Progress) -> bool) -> UNet {
+    let mut trainer = Trainer::new(config, dir, &Device::flex(), &Start::Fresh).unwrap();
+    trainer.run(progress).unwrap();
+    trainer.model()
 }
 
 /// The weights by name, as bytes.
@@ -42,42 +51,72 @@ fn a_resumed_run_ends_where_an_unbroken_one_does() {
     let [whole, broken, again] = [0, 1, 2].map(|_| tempfile::tempdir().unwrap());
     let device = Device::flex();
     let mut seen = 0;
-    let unbroken = train(tiny(), whole.path(), &device, |_| {
+    let unbroken = train(tiny(), whole.path(), |_| {
         seen += 1;
         true
     });
     assert_eq!(seen, 6);
-    let mut first = Trainer::new(tiny(), broken.path(), &device, true, None).unwrap();
+    let mut first = Trainer::new(tiny(), broken.path(), &device, &Start::Fresh).unwrap();
     first.run(|p| p.step < 4).unwrap();
     assert_eq!(first.step(), 4);
-    let mut second = Trainer::new(tiny(), broken.path(), &device, true, None).unwrap();
+    let mut second = Trainer::new(tiny(), broken.path(), &device, &Start::Resume).unwrap();
     assert_eq!(second.step(), 4);
     second.run(|_| true).unwrap();
-    let again = train(tiny(), again.path(), &device, |_| true);
-    assert_eq!(differing(&again.unwrap(), unbroken.as_ref().unwrap()), [""; 0], "a run does not repeat");
-    assert_eq!(differing(&second.model(), &unbroken.unwrap()), [""; 0]);
+    let again = train(tiny(), again.path(), |_| true);
+    assert_eq!(differing(&again, &unbroken), [""; 0], "a run does not repeat");
+    assert_eq!(differing(&second.model(), &unbroken), [""; 0]);
     let csv = |dir: &tempfile::TempDir| std::fs::read_to_string(dir.path().join("metrics.csv")).unwrap();
     let without_seconds = |text: String| -> Vec<String> {
         text.lines().map(|l| l.split(',').enumerate().filter(|(i, _)| *i != 1).map(|(_, v)| v).collect()).collect()
     };
     assert_eq!(without_seconds(csv(&whole)), without_seconds(csv(&broken)));
+    let curves = std::fs::read_to_string(whole.path().join("curves.svg")).unwrap();
+    assert!(curves.contains("<polyline") && curves.contains("scan"));
     assert!(whole.path().join("best.bpk").is_file() && whole.path().join("last.bpk").is_file());
 }
 
 #[test]
-fn a_checkpoint_of_another_configuration_is_refused() {
+fn runs_that_cannot_start_say_why() {
     let dir = tempfile::tempdir().unwrap();
     let device = Device::flex();
-    train(TrainConfig { steps: 1, ..tiny() }, dir.path(), &device, |_| true).unwrap();
-    let error = train(tiny(), dir.path(), &device, |_| true).unwrap_err();
-    assert!(error.to_string().contains("another configuration"), "{error}");
+    let refused = |config: TrainConfig, dir: &Path, start: Start, reason: &str| {
+        let error = Trainer::new(config, dir, &device, &start).err().expect("is refused").to_string();
+        assert!(error.contains(reason), "{error}");
+    };
+    refused(tiny(), dir.path(), Start::Resume, "no run");
+    train(TrainConfig { steps: 1, ..tiny() }, dir.path(), |_| true);
+    refused(tiny(), dir.path(), Start::Resume, "another configuration");
+    refused(tiny(), dir.path(), Start::Fresh, "already");
+    let other = tempfile::tempdir().unwrap();
+    refused(tiny(), other.path(), Start::BuiltIn, "another shape");
+    refused(tiny(), other.path(), Start::From("missing.bpk".into()), "missing.bpk");
+    refused(TrainConfig { svgs: Some("missing".into()), ..tiny() }, other.path(), Start::Fresh, "missing");
+}
+
+#[test]
+fn svgs_without_strokes_are_named_and_left_out() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
+    let svg = |body: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' width='24' height='24'>{body}</svg>");
+    write("filled.svg", &svg("<path d='M2 2h9v9z'/>"));
+    write("broken.svg", "<svg");
+    write("notes.txt", "no drawing");
+    assert!(Source::with_svgs(dir.path()).unwrap_err().to_string().contains("no SVG with strokes"));
+    write("stroked.svg", &svg("<path d='M2 2h9v9' fill='none' stroke='black'/>"));
+    let (source, skipped) = Source::with_svgs(dir.path()).unwrap();
+    let names: Vec<_> = skipped.iter().map(|(p, _)| p.file_name().unwrap().to_str().unwrap()).collect();
+    assert_eq!((source.len(), names), (1, vec!["broken.svg", "filled.svg"]));
+    let config = TrainConfig { svg_share: 1.0, ..tiny() };
+    let sample = batch(&config, &source, 0);
+    assert!(sample.weights.iter().any(|w| *w > 0.0));
+    assert_ne!(sample.input, batch(&config, &Source::synthetic(), 0).input);
 }
 
 #[test]
 fn training_on_one_batch_makes_the_loss_small() {
     let config = TrainConfig { angle: 0.0, gamma: 0.0, ..tiny() };
     let device = Device::flex().autodiff();
-    let batch = Batch::new(batch(&config, 0), config.batch, config.crop, &device);
+    let batch = Batch::new(batch(&config, &Source::synthetic(), 0), config.batch, config.crop, &device);
     let mut model = config.network.init(&device, 1);
     let mut optimizer = burn::optim::AdamConfig::new().with_epsilon(1e-8).init();
     let mut losses = Vec::new();
@@ -94,7 +133,7 @@ fn training_on_one_batch_makes_the_loss_small() {
 fn the_loss_of_the_truth_is_nothing() {
     let config = TrainConfig { network: UNetConfig { input: Input::Ink, ..tiny().network }, ..tiny() };
     let device = Device::flex();
-    let sample = batch(&config, 0);
+    let sample = batch(&config, &Source::synthetic(), 0);
     let shape = [config.batch, 4, config.crop, config.crop];
     let field = Tensor::from_data(burn::tensor::TensorData::new(sample.target.clone(), shape), &device);
     let batch = Batch::new(sample, config.batch, config.crop, &device);
@@ -108,9 +147,9 @@ fn the_loss_of_the_truth_is_nothing() {
 #[test]
 fn batches_come_in_order_and_repeat() {
     let config = tiny();
-    let received: Vec<Sample> = batches(&config, 2..5).iter().collect();
+    let received: Vec<Sample> = batches(&config, &Arc::new(Source::synthetic()), 2..5).iter().collect();
     assert_eq!(received.len(), 3);
-    assert_eq!(received[1].input, batch(&config, 3).input);
+    assert_eq!(received[1].input, batch(&config, &Source::synthetic(), 3).input);
     assert_ne!(received[0].target, received[1].target);
 }
 

@@ -1,11 +1,10 @@
 //! Angular error of a network on drawings that it was not trained on.
 
 use super::config::TrainConfig;
-use super::data::observed;
+use super::source::{Source, sight};
 use crate::field::decode;
-use crate::ground_truth::{self, FieldTruth, Place};
-use crate::render::render;
-use crate::synth;
+use crate::ground_truth::{FieldTruth, Place};
+use crate::raster::Raster;
 use crate::unet::{Features, UNet, features};
 use burn::tensor::{Device, Tensor, TensorData};
 use kurbo::Vec2;
@@ -45,44 +44,61 @@ impl Validation {
 
 /// The fixed drawings of a run's validation.
 pub struct Validator {
-    side: usize,
-    sheets: Vec<(FieldTruth, [Features; 2])>,
+    /// For each sheet what is true and the network's input, clean and scanned.
+    sheets: Vec<[(FieldTruth, Features); 2]>,
+    multiple: usize,
 }
 
 impl Validator {
     /// Draws the sheets; they depend on the configuration's seed but on none of the training data.
-    pub fn new(config: &TrainConfig) -> Self {
+    pub fn new(config: &TrainConfig, source: &Source) -> Self {
         let sheet = |n: usize| {
-            let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x5eed_07a1_1da7);
-            rng.set_stream(n as u64);
-            let drawing = synth::drawing(&mut rng, config.sheet);
-            let truth = ground_truth::field(&drawing);
-            let inputs = [false, true].map(|scanned| {
-                let ink = if scanned { observed(&mut rng, &drawing, true) } else { render(&drawing) };
-                features(&ink, config.network.input)
-            });
-            (truth, inputs)
+            [false, true].map(|scanned| {
+                let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x5eed_07a1_1da7);
+                rng.set_stream(n as u64);
+                let sight = sight(&mut rng, source, config, |_| scanned);
+                let ink = padded(&sight.ink, config.network.multiple());
+                (sight.truth, features(&ink, config.network.input))
+            })
         };
-        Self { side: config.sheet, sheets: (0..config.validation_sheets).map(sheet).collect() }
+        Self { multiple: config.network.multiple(), sheets: (0..config.validation_sheets).map(sheet).collect() }
     }
 
     /// Runs a network that is on a plain device.
     pub fn run(&self, model: &UNet, device: &Device) -> Validation {
+        self.measure(|channels, [height, width]| {
+            let data = TensorData::new(channels.to_vec(), [1, channels.len() / (width * height), height, width]);
+            let output = model.forward(Tensor::from_data(data, device));
+            output.into_data().try_into_vec::<f32>().unwrap_or_default()
+        })
+    }
+
+    /// How good no network is: the errors of the field that it would correct.
+    pub fn without_network(&self) -> Validation {
+        self.measure(|_, [height, width]| vec![0.0; 4 * height * width])
+    }
+
+    fn measure(&self, network: impl Fn(&[f32], [usize; 2]) -> Vec<f32>) -> Validation {
         let [clean, scan] = [0, 1].map(|kind| {
             let mut sum = Sums::default();
-            for (truth, inputs) in &self.sheets {
-                let Features { channels, base } = &inputs[kind];
-                let n = self.side * self.side;
-                let data = TensorData::new(channels.clone(), [1, channels.len() / n, self.side, self.side]);
-                let output = model.forward(Tensor::from_data(data, device));
-                let mut field = output.into_data().try_into_vec::<f32>().unwrap_or_default();
+            for (truth, Features { channels, base }) in self.sheets.iter().map(|s| &s[kind]) {
+                let (width, height) = truth.place.size();
+                let [width, height] = [width, height].map(|n| n.next_multiple_of(self.multiple));
+                let mut field = network(channels, [height, width]);
                 field.iter_mut().zip(base).for_each(|(f, b)| *f += b);
-                sum.add(&field, truth);
+                sum.add(&field, width, truth);
             }
             sum.mean()
         });
         Validation { clean, scan }
     }
+}
+
+/// The ink with blank paper to the right and below, so that the network can take its size.
+fn padded(ink: &Raster<f32>, multiple: usize) -> Raster<f32> {
+    let (width, height) = ink.size();
+    let size = [width, height].map(|n| n.next_multiple_of(multiple));
+    Raster::from_fn(size[0], size[1], |x, y| if x < width && y < height { ink[(x, y)] } else { 0.0 })
 }
 
 #[derive(Default)]
@@ -93,15 +109,14 @@ struct Sums {
 }
 
 impl Sums {
-    /// Adds one image; `field` is `[4, height, width]`.
-    fn add(&mut self, field: &[f32], truth: &FieldTruth) {
-        let n = truth.place.data().len();
-        for i in 0..n {
-            if !truth.ink.data()[i] {
-                continue;
-            }
-            let c0 = Complex32::new(field[i], field[n + i]);
-            let c2 = Complex32::new(field[2 * n + i], field[3 * n + i]);
+    /// Adds one image; `field` is `[4, _, stride]` and covers it.
+    fn add(&mut self, field: &[f32], stride: usize, truth: &FieldTruth) {
+        let n = field.len() / 4;
+        let width = truth.place.width();
+        for i in (0..truth.ink.data().len()).filter(|i| truth.ink.data()[*i]) {
+            let at = i / width * stride + i % width;
+            let c0 = Complex32::new(field[at], field[n + at]);
+            let c2 = Complex32::new(field[2 * n + at], field[3 * n + at]);
             self.squares += f64::from((c0 - truth.field.c0().data()[i]).norm_sqr());
             self.squares += f64::from((c2 - truth.field.c2().data()[i]).norm_sqr());
             let right = std::f64::consts::FRAC_PI_2;
@@ -128,19 +143,4 @@ impl Sums {
         let mse = self.squares / (4.0 * self.ink.1.max(1.0));
         AngularError { ink: degrees(self.ink), junction: degrees(self.junction), mse }
     }
-}
-
-/// How good no network is: the errors of the field that it would correct.
-pub fn without_network(config: &TrainConfig) -> Validation {
-    let validator = Validator::new(config);
-    let [clean, scan] = [0, 1].map(|kind| {
-        let mut sum = Sums::default();
-        for (truth, inputs) in &validator.sheets {
-            let mut field = inputs[kind].base.clone();
-            field.resize(4 * validator.side * validator.side, 0.0);
-            sum.add(&field, truth);
-        }
-        sum.mean()
-    });
-    Validation { clean, scan }
 }

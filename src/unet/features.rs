@@ -1,7 +1,8 @@
 //! What the network is shown, from ink.
 
+use crate::clean::LineImage;
+use crate::moments::{Moments, fit, gradients};
 use crate::raster::Raster;
-use num_complex::Complex32;
 use serde::{Deserialize, Serialize};
 
 /// The channels of the network's input.
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub enum Input {
     /// The ink alone, as in the paper; the network regresses the coefficients themselves.
     Ink,
-    /// The ink and the structure tensor at two scales; the network regresses what has to be added to the
+    /// The ink and the fourth-order structure tensor at two scales; the network regresses what has to be added to the
     /// tensor's own field, so that it starts where a structure tensor ends.
     #[default]
     Tensor,
@@ -26,99 +27,97 @@ impl Input {
     }
 }
 
-/// Windows of the structure tensor: standard deviations in pixels.
-pub const SCALES: [f64; 2] = [2.2, 4.0];
+/// Windows of the moments: standard deviations in pixels.
+const SCALES: [f64; 2] = [1.8, 4.0];
 
 /// Gradient energy that counts as paper: coherence falls off below it.
 const FLOOR: f32 = 2e-3;
 
-/// Pixels that [`features`] looks around itself.
-pub const REACH: usize = 13;
+/// Weight of the prior of the field that is corrected, as in [`crate::estimate::StructureTensor`].
+const PRIOR: f32 = 0.06;
 
 /// Input channels and the field that the output is added to, planes of `width x height`.
 #[derive(Clone, Debug)]
 pub struct Features {
     /// `[channels, height, width]`.
     pub channels: Vec<f32>,
-    /// `Re c0`, `Im c0` of the field that the network corrects, `[2, height, width]`; its `c2` is 0. Empty for
+    /// `Re c0`, `Im c0`, `Re c2`, `Im c2` of the field that the network corrects, `[4, height, width]`. Empty for
     /// [`Input::Ink`].
     pub base: Vec<f32>,
 }
 
+/// The ink that the network is shown of a cleaned image: its dark cores at 1, which is nine tenths of the way up the
+/// ink on the mask.
+pub fn shown(image: &LineImage) -> Raster<f32> {
+    let mut counts = [0usize; 64];
+    let inked = image.ink.data().iter().zip(image.mask.data()).filter(|(_, m)| **m);
+    inked.for_each(|(i, _)| counts[(i.clamp(0.0, 1.0) * 63.0) as usize] += 1);
+    let mut left = counts.iter().sum::<usize>() / 10;
+    let mut core = 1.0f32;
+    for (bin, &n) in counts.iter().enumerate().rev() {
+        if left < n {
+            core = ((bin as f32 + 0.5) / 63.0).clamp(0.2, 1.0);
+            break;
+        }
+        left -= n;
+    }
+    image.ink.map(|i| (i / core).clamp(0.0, 1.0))
+}
+
 /// The network's input for an image of ink, 0 to 1.
 ///
-/// With the Scharr gradient `g = gx + i gy`, a window's tensor in complex form is `Z = -<g^2> / (<|g|^2> + floor)`: the
-/// squared tangent times the coherence. The channels are the ink, then `Z` and `Z^2` of each scale; the field that is
-/// corrected has tangent and normal of the smaller scale, `c0 = -Z^2`, `c2 = 0`.
+/// In a window with the moments `m0`, `m2`, `m4` of the squared tangents (see [`crate::estimate::StructureTensor`]),
+/// the channels are the ink, then `m2 / (m0 + floor)` and `m4 / (m0 + floor)` of each scale; the field that is
+/// corrected is the one that fits the moments of the smaller scale best.
 pub fn features(ink: &Raster<f32>, input: Input) -> Features {
     let mut channels = ink.data().to_vec();
-    if input == Input::Ink {
-        return Features { channels, base: Vec::new() };
-    }
-    let (width, height) = ink.size();
-    let planes = products(ink);
     let mut base = Vec::new();
-    for sigma in SCALES {
-        let [re, im, energy] = planes.each_ref().map(|p| window(p, width, height, sigma));
-        let z: Vec<Complex32> =
-            re.iter().zip(&im).zip(&energy).map(|((a, b), e)| -Complex32::new(*a, *b) / (e + FLOOR)).collect();
-        channels.extend(z.iter().map(|z| z.re));
-        channels.extend(z.iter().map(|z| z.im));
-        channels.extend(z.iter().map(|z| (z * z).re));
-        channels.extend(z.iter().map(|z| (z * z).im));
-        if base.is_empty() {
-            base.extend(z.iter().map(|z| -(z * z).re));
-            base.extend(z.iter().map(|z| -(z * z).im));
+    if input == Input::Ink {
+        return Features { channels, base };
+    }
+    let gradients = gradients(ink);
+    for (scale, sigma) in SCALES.into_iter().enumerate() {
+        let mut moments = window(&gradients, sigma);
+        for m in &mut moments {
+            let energy = m[0] + FLOOR;
+            m[1..].iter_mut().for_each(|v| *v /= energy);
+        }
+        (1..5).for_each(|k| channels.extend(moments.iter().map(|m| m[k])));
+        if scale == 0 {
+            let solved: Vec<_> = moments.iter().map(|&[_, a, b, c, d]| fit(&[1.0, a, b, c, d], PRIOR)).collect();
+            base.extend(solved.iter().map(|s| s.0.re));
+            base.extend(solved.iter().map(|s| s.0.im));
+            base.extend(solved.iter().map(|s| s.1.re));
+            base.extend(solved.iter().map(|s| s.1.im));
         }
     }
     Features { channels, base }
 }
 
-/// `Re g^2`, `Im g^2` and `|g|^2` of the Scharr gradient; the ink's edge pixels are repeated outside.
-fn products(ink: &Raster<f32>) -> [Vec<f32>; 3] {
-    let (width, height) = ink.size();
-    let mut out = [0, 1, 2].map(|_| vec![0.0f32; width * height]);
-    let mut rows = [0, 1, 2].map(|_| vec![0.0f32; width + 2]);
-    for y in 0..height {
-        for (row, from) in rows.iter_mut().zip([y.saturating_sub(1), y, (y + 1).min(height - 1)]) {
-            row[1..=width].copy_from_slice(ink.row(from));
-            row[0] = row[1];
-            row[width + 1] = row[width];
-        }
-        let [a, b, c] = &rows;
-        let [re, im, energy] = out.each_mut().map(|p| &mut p[y * width..(y + 1) * width]);
-        for x in 0..width {
-            let gx = (3.0 * (a[x + 2] - a[x] + c[x + 2] - c[x]) + 10.0 * (b[x + 2] - b[x])) / 16.0;
-            let gy = (3.0 * (c[x] - a[x] + c[x + 2] - a[x + 2]) + 10.0 * (c[x + 1] - a[x + 1])) / 16.0;
-            re[x] = gx * gx - gy * gy;
-            im[x] = 2.0 * gx * gy;
-            energy[x] = gx * gx + gy * gy;
-        }
-    }
-    out
-}
-
-/// Gaussian window average of a plane, zero outside; the window is cut at three deviations.
-fn window(plane: &[f32], width: usize, height: usize, sigma: f64) -> Vec<f32> {
+/// Gaussian window average of moments, zero outside; the window is cut at three deviations.
+fn window(moments: &Raster<Moments>, sigma: f64) -> Vec<Moments> {
+    const N: usize = 5;
+    let (width, height) = moments.size();
     let radius = (3.0 * sigma).ceil() as usize;
     let mut kernel: Vec<f32> = (0..=radius).map(|d| (-((d * d) as f64) / (2.0 * sigma * sigma)).exp() as f32).collect();
     let total = kernel[0] + 2.0 * kernel[1..].iter().sum::<f32>();
     kernel.iter_mut().for_each(|k| *k /= total);
-    let mut across = vec![0.0f32; width * height];
-    let mut padded = vec![0.0f32; width + 2 * radius];
-    for (from, to) in plane.chunks_exact(width).zip(across.chunks_exact_mut(width)) {
+    let mut across = vec![[0.0f32; N]; width * height];
+    let mut padded = vec![[0.0f32; N]; width + 2 * radius];
+    for (from, to) in moments.data().chunks_exact(width).zip(across.chunks_exact_mut(width)) {
         padded[radius..radius + width].copy_from_slice(from);
+        let to = to.as_flattened_mut();
         for (d, &k) in kernel.iter().enumerate().skip(1) {
-            let (left, right) = (&padded[radius - d..], &padded[radius + d..]);
+            let (left, right) = (padded[radius - d..].as_flattened(), padded[radius + d..].as_flattened());
             to.iter_mut().zip(left).zip(right).for_each(|((t, l), r)| *t += k * (l + r));
         }
-        to.iter_mut().zip(from).for_each(|(t, f)| *t += kernel[0] * f);
+        to.iter_mut().zip(from.as_flattened()).for_each(|(t, f)| *t += kernel[0] * f);
     }
-    let mut out = vec![0.0f32; width * height];
+    let mut out = vec![[0.0f32; N]; width * height];
     for (y, to) in out.chunks_exact_mut(width).enumerate() {
         for v in y.saturating_sub(radius)..(y + radius + 1).min(height) {
-            let k = kernel[v.abs_diff(y)];
-            to.iter_mut().zip(&across[v * width..]).for_each(|(t, f)| *t += k * f);
+            let (k, from) = (kernel[v.abs_diff(y)], across[v * width..].as_flattened());
+            to.as_flattened_mut().iter_mut().zip(from).for_each(|(t, f)| *t += k * f);
         }
     }
     out
@@ -127,6 +126,7 @@ fn window(plane: &[f32], width: usize, height: usize, sigma: f64) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use num_complex::Complex32;
 
     /// A soft-edged straight line through the middle.
     fn line(angle: f32, size: usize) -> Raster<f32> {

@@ -7,6 +7,6 @@ mod model;
 mod weights;
 
 pub use device::device;
-pub use features::{Features, Input, REACH, SCALES, features};
+pub use features::{Features, Input, features, shown};
 pub use model::{Block, UNet, UNetConfig};
 pub use weights::{Weights, built_in, load, save};

@@ -46,6 +46,9 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Write the field of directions that strokes follow.
     Field(FieldArgs),
+    /// Train the network that predicts the field.
+    #[cfg(feature = "learned")]
+    Train(TrainArgs),
 }
 
 /// The arguments of a trace.
@@ -63,6 +66,8 @@ pub(crate) struct TraceArgs {
     pub(crate) clean: CleanArgs,
     #[command(flatten)]
     pub(crate) fit: FitArgs,
+    #[command(flatten)]
+    pub(crate) source: FieldSourceArgs,
     /// Decimals of the coordinates and widths in the output
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = parse_precision, help_heading = "Output")]
     pub(crate) precision: usize,
@@ -88,7 +93,92 @@ pub(crate) struct FieldArgs {
     #[command(flatten)]
     pub(crate) clean: CleanArgs,
     #[command(flatten)]
+    pub(crate) source: FieldSourceArgs,
+    #[command(flatten)]
     pub(crate) talk: TalkArgs,
+}
+
+/// The arguments of `trace train`.
+#[cfg(feature = "learned")]
+#[derive(Debug, Args)]
+pub(crate) struct TrainArgs {
+    /// A TOML file with what the run is to be; everything has a default
+    #[arg(value_name = "CONFIG")]
+    pub(crate) config: Option<PathBuf>,
+    /// The folder of the run: weights, checkpoint, metrics.csv, curves.svg
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// Go on from the checkpoint in the run's folder, exactly as if it had never stopped
+    #[arg(long, conflicts_with = "from")]
+    pub(crate) resume: bool,
+    /// Start from the weights in a file, or from `built-in`
+    #[arg(long, value_name = "WEIGHTS")]
+    pub(crate) from: Option<PathBuf>,
+    /// Mix in the strokes of the SVGs in a folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) svgs: Option<PathBuf>,
+    /// Steps in all
+    #[arg(long, value_name = "N")]
+    pub(crate) steps: Option<usize>,
+    /// Crops in a step
+    #[arg(long, value_name = "N")]
+    pub(crate) batch: Option<usize>,
+    /// Largest learning rate
+    #[arg(long, value_name = "R")]
+    pub(crate) rate: Option<f64>,
+    /// Stop after this many validations without a better one; 0 never does
+    #[arg(long, value_name = "N")]
+    pub(crate) patience: Option<usize>,
+    /// Seed of the weights and of all data
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    #[command(flatten)]
+    pub(crate) device: DeviceArgs,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// Where the network runs.
+#[cfg(feature = "learned")]
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Network")]
+pub(crate) struct DeviceArgs {
+    /// What runs the network: `cpu` is the fastest on the CPU; `flex`, `ndarray` and `gpu` are backends of the tensor
+    /// library, of which the last two have to be built in
+    #[arg(long, value_name = "DEVICE", default_value = "auto",
+          value_parser = ["auto", "cpu", "flex", "ndarray", "gpu"])]
+    pub(crate) device: String,
+}
+
+/// Where the field comes from.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Network")]
+pub(crate) struct FieldSourceArgs {
+    /// What gives the directions: the trained network, or the structure tensor of the ink
+    #[arg(long, value_name = "KIND", default_value = DEFAULT_ESTIMATOR)]
+    pub(crate) estimator: Estimator,
+    /// Weights of the network, in place of those that the program carries
+    #[cfg(feature = "learned")]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) weights: Option<PathBuf>,
+    #[cfg(feature = "learned")]
+    #[command(flatten)]
+    pub(crate) device: DeviceArgs,
+}
+
+#[cfg(feature = "learned")]
+const DEFAULT_ESTIMATOR: &str = "unet";
+#[cfg(not(feature = "learned"))]
+const DEFAULT_ESTIMATOR: &str = "tensor";
+
+/// A source of fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Estimator {
+    /// The trained network
+    #[cfg(feature = "learned")]
+    Unet,
+    /// The fourth-order structure tensor
+    Tensor,
 }
 
 /// How the input is read.

@@ -2,6 +2,7 @@
 
 use crate::args::{self, FieldArgs};
 use crate::failure::Failure;
+use crate::source;
 use crate::target;
 use crate::watch::Stages;
 use fieldtrace::Error;
@@ -27,7 +28,9 @@ pub(crate) fn run(args: &FieldArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of(&name, &e);
     let format = format_of(&args.output)?;
     target::keep_input(&args.input, &args.output)?;
-    let vectorizer = Vectorizer::new(args::options(&args.clean, None)).map_err(failed)?;
+    let vectorizer = source::estimator(&args.source)
+        .and_then(|source| Vectorizer::with(args::options(&args.clean, None), source))
+        .map_err(failed)?;
 
     let mut stages = Stages::start(args.talk.verbose);
     let scan = load(&args.input, &args.load.options()).map_err(failed)?.scan;

@@ -3,7 +3,10 @@
 mod args;
 mod failure;
 mod field;
+mod source;
 mod target;
+#[cfg(feature = "learned")]
+mod train;
 mod vectorize;
 mod watch;
 
@@ -11,6 +14,11 @@ use args::{Cli, Command};
 use clap::Parser;
 use failure::Failure;
 use std::process::ExitCode;
+
+/// Training makes many large temporaries, which this allocator keeps for the next step.
+#[cfg(feature = "learned")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
     match run(Cli::parse()) {
@@ -25,6 +33,8 @@ fn main() -> ExitCode {
 fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Some(Command::Field(args)) => field::run(&args),
+        #[cfg(feature = "learned")]
+        Some(Command::Train(args)) => train::run(&args),
         None => vectorize::run(&cli.trace),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::args::{self, TraceArgs};
 use crate::failure::Failure;
+use crate::source;
 use crate::target;
 use crate::watch::{Stages, Watch};
 use fieldtrace::drawing::Drawing;
@@ -16,7 +17,9 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     let Some(input) = &args.input else { return Err(Failure::Usage("no input is given".into())) };
     let name = target::name(input);
     let failed = |e: fieldtrace::Error| Failure::of(&name, &e);
-    let vectorizer = Vectorizer::new(args::options(&args.clean, Some(&args.fit))).map_err(failed)?;
+    let vectorizer = source::estimator(&args.source)
+        .and_then(|source| Vectorizer::with(args::options(&args.clean, Some(&args.fit)), source))
+        .map_err(failed)?;
     let output = target::svg_path(input, args.output.as_deref())?;
 
     let mut stages = Stages::start(args.talk.verbose);

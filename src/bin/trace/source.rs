@@ -1,0 +1,29 @@
+//! Where the field comes from.
+
+use crate::args::{Estimator, FieldSourceArgs};
+use fieldtrace::Result;
+use fieldtrace::estimate::{FieldEstimator, StructureTensor};
+
+/// The estimator that was asked for.
+pub(crate) fn estimator(args: &FieldSourceArgs) -> Result<Box<dyn FieldEstimator>> {
+    match args.estimator {
+        Estimator::Tensor => Ok(Box::new(StructureTensor::default())),
+        #[cfg(feature = "learned")]
+        Estimator::Unet => Ok(Box::new(network(args)?)),
+    }
+}
+
+/// The network of some weights on some device.
+#[cfg(feature = "learned")]
+fn network(args: &FieldSourceArgs) -> Result<fieldtrace::estimate::UNet> {
+    use fieldtrace::estimate::UNet;
+    use fieldtrace::unet;
+    let Some(device) = unet::device(&args.device.device)? else {
+        return args.weights.as_deref().map_or_else(UNet::built_in, UNet::from_file);
+    };
+    let weights = match &args.weights {
+        Some(path) => unet::load(path, &device)?,
+        None => unet::built_in(&device)?,
+    };
+    Ok(UNet::on_device(weights, device))
+}

@@ -1,0 +1,140 @@
+//! Where drawings to train on come from, and how the network gets to see them.
+
+use super::config::TrainConfig;
+use crate::clean::clean;
+use crate::drawing::Drawing;
+use crate::error::{Error, Result};
+use crate::ground_truth::{self, FieldTruth};
+use crate::load::{LoadOptions, Scan, load};
+use crate::options::Options;
+use crate::raster::Raster;
+use crate::render::render;
+use crate::synth::{self, ScanStyle};
+use crate::unet::shown;
+use rand::Rng;
+use rayon::prelude::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Longer side in pixels that SVG drawings are read at; they are scaled from there.
+const READ_SIDE: u32 = 512;
+
+/// Drawings of others beside the synthetic ones.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    drawings: Vec<Drawing>,
+}
+
+/// An SVG that cannot be trained on, and why.
+pub type Skipped = (PathBuf, String);
+
+impl Source {
+    /// Synthetic drawings alone.
+    pub fn synthetic() -> Self {
+        Self::default()
+    }
+
+    /// Synthetic drawings mixed with the strokes of the SVGs in a folder and the folders in it. Files that cannot be read
+    /// or hold no strokes are left out and named.
+    ///
+    /// # Errors
+    /// [`Error::Read`] when the folder cannot be listed; [`Error::Train`] when nothing in it has strokes.
+    pub fn with_svgs(folder: &Path) -> Result<(Self, Vec<Skipped>)> {
+        let mut paths = Vec::new();
+        list(folder, &mut paths)?;
+        paths.sort();
+        let read: Vec<_> = paths.into_par_iter().map(|path| (strokes_of(&path), path)).collect();
+        let (mut drawings, mut skipped) = (Vec::new(), Vec::new());
+        for (result, path) in read {
+            match result {
+                Ok(drawing) => drawings.push(drawing),
+                Err(reason) => skipped.push((path, reason)),
+            }
+        }
+        if drawings.is_empty() {
+            return Err(Error::Train { reason: format!("{}: holds no SVG with strokes", folder.display()) });
+        }
+        Ok((Self { drawings }, skipped))
+    }
+
+    /// Number of drawings by others.
+    pub fn len(&self) -> usize {
+        self.drawings.len()
+    }
+
+    /// Whether there are only synthetic drawings.
+    pub fn is_empty(&self) -> bool {
+        self.drawings.is_empty()
+    }
+
+    /// A sheet of some drawing.
+    fn drawing(&self, rng: &mut impl Rng, config: &TrainConfig) -> Drawing {
+        if !self.drawings.is_empty() && rng.random_bool(config.svg_share) {
+            let drawing = &self.drawings[rng.random_range(0..self.drawings.len())];
+            if let Some(sheet) = synth::placed(rng, drawing, config.sheet) {
+                return sheet;
+            }
+        }
+        synth::drawing(rng, config.sheet)
+    }
+}
+
+/// What the network sees of a drawing, and what is true there; both of one size.
+#[derive(Clone, Debug)]
+pub struct Sight {
+    /// The ink, as cleaning gives it.
+    pub ink: Raster<f32>,
+    /// The field that it should see in it.
+    pub truth: FieldTruth,
+}
+
+/// Draws until there is a sheet on which cleaning leaves something, no smaller than a crop; then looks at it as at a clean
+/// rendering and, if `scanned` says so, as at a scan.
+pub fn sight<R: Rng>(rng: &mut R, source: &Source, config: &TrainConfig, scanned: impl Fn(&mut R) -> bool) -> Sight {
+    loop {
+        let drawing = source.drawing(rng, config);
+        let scanned = scanned(rng);
+        if let Some(sight) = look(rng, &drawing, scanned).filter(|s| s.ink.width().min(s.ink.height()) >= config.crop) {
+            return sight;
+        }
+    }
+}
+
+/// What the network sees of a drawing; `None` where cleaning finds no line.
+pub fn look(rng: &mut impl Rng, drawing: &Drawing, scanned: bool) -> Option<Sight> {
+    let coverage = render(drawing);
+    let gray = if scanned {
+        let style = ScanStyle::draw(rng);
+        synth::scan(rng, &coverage, &style)
+    } else {
+        synth::clean_ink(rng, &coverage).map(|i| 1.0 - i)
+    };
+    let image = clean(&Scan { gray, rgb: None, dpi: None }, &Options::default());
+    if image.mask.count() == 0 {
+        return None;
+    }
+    let (width, height) = image.ink.size();
+    let mut drawing = drawing.scaled(image.scale);
+    (drawing.width, drawing.height) = (width as f64, height as f64);
+    Some(Sight { ink: shown(&image), truth: ground_truth::field(&drawing) })
+}
+
+fn strokes_of(path: &Path) -> std::result::Result<Drawing, String> {
+    let options = LoadOptions { size: Some(READ_SIDE), ..LoadOptions::default() };
+    let input = load(path, &options).map_err(|e| e.to_string())?;
+    let drawing = input.drawing.ok_or("is not an SVG")?;
+    if drawing.strokes.is_empty() { Err("has no strokes".into()) } else { Ok(drawing) }
+}
+
+fn list(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
+    let failed = |cause| Error::Read { input: folder.display().to_string(), cause };
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.is_dir() {
+            list(&path, paths)?;
+        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}
