@@ -1,6 +1,6 @@
 //! A field from local gradients, without a network: the fourth-order structure tensor.
 
-use super::FieldEstimator;
+use super::{FieldEstimator, smoothed};
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::PolyVectorField;
@@ -39,7 +39,7 @@ impl FieldEstimator for StructureTensor {
             Raster::from_vec(width, height, solved.iter().map(f).collect()).expect("one solution per pixel")
         };
         let confidence = Raster::from_vec(width, height, solved.iter().map(|s| s.2).collect()).expect("likewise");
-        PolyVectorField::new(field(|s| s.0), field(|s| s.1), confidence)
+        Ok(smoothed(&PolyVectorField::new(field(|s| s.0), field(|s| s.1), confidence)?, image))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The field from the trained network.
 
-use super::FieldEstimator;
+use super::{FieldEstimator, smoothed};
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::{PolyVectorField, decode};
@@ -99,7 +99,7 @@ impl FieldEstimator for UNet {
                 tiles.iter().map(run).collect()
             }
         };
-        assemble(width, height, &image.mask, parts)
+        Ok(smoothed(&assemble(width, height, &image.mask, parts)?, image))
     }
 }
 

@@ -7,6 +7,7 @@
 
 mod frame;
 mod npz;
+mod smooth;
 
 pub use frame::{Frame, FrameField};
 pub use npz::write_npz;

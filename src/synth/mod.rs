@@ -12,7 +12,8 @@ pub use scan::{ScanStyle, clean_ink, scan};
 use crate::drawing::{Centreline, Color, Drawing, Stroke};
 use kurbo::Point;
 use rand::Rng;
-use shapes::within;
+use shapes::{arc_from, open, within};
+use std::f64::consts::TAU;
 
 /// How the strokes of one drawing are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +72,21 @@ pub fn drawing(rng: &mut impl Rng, size: usize) -> Drawing {
         motifs::motif(rng, &mut sheet);
     }
     sheet.drawing
+}
+
+/// A drawing of lines and circular arcs only, all of them at least partly in sight, drawn with one pen of 1.5 to 4 px.
+pub fn primitives(rng: &mut impl Rng, size: usize, count: usize) -> Drawing {
+    let side = size as f64;
+    let mut drawing = Drawing::new(side, side);
+    let width = within(rng, 1.5, 4.0);
+    for _ in 0..count {
+        let start = Point::new(within(rng, 0.1, 0.9) * side, within(rng, 0.1, 0.9) * side);
+        let (angle, length) = (within(rng, 0.0, TAU), within(rng, 0.3, 0.9) * side);
+        let bend = if rng.random_bool(0.5) { 0.0 } else { within(rng, -2.5, 2.5) };
+        let centreline = open(vec![arc_from(start, angle, length, bend)]);
+        drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+    }
+    drawing
 }
 
 #[cfg(test)]

@@ -33,13 +33,19 @@ pub struct TrainConfig {
     pub sheet: usize,
     /// Crops cut from each drawing.
     pub crops_a_sheet: usize,
+    /// Sheets in the training set, each seen once an epoch and in another order every time, a crop of each; 0 draws
+    /// new ones for every step.
+    pub images: usize,
+    /// Draw this many lines and arcs on each sheet and nothing else; 0 draws of everything.
+    pub primitives: usize,
     /// A folder of SVG drawings to mix in.
     pub svgs: Option<PathBuf>,
     /// Share of the sheets that show one of those.
     pub svg_share: f64,
     /// Steps between validations.
     pub validate_every: usize,
-    /// Drawings to validate on, each as clean and as scan.
+    /// Drawings to validate on, each as clean and, where scans are trained on, as scan; 0 validates on the training
+    /// set of `images`.
     pub validation_sheets: usize,
     /// Seconds between checkpoints.
     pub checkpoint_seconds: u64,
@@ -64,6 +70,8 @@ impl Default for TrainConfig {
             scans: 0.65,
             sheet: 144,
             crops_a_sheet: 4,
+            images: 0,
+            primitives: 0,
             svgs: None,
             svg_share: 0.5,
             validate_every: 500,
@@ -117,6 +125,12 @@ impl TrainConfig {
         if self.batch == 0 || self.crops_a_sheet == 0 || !self.batch.is_multiple_of(self.crops_a_sheet) {
             return fail("batch has to be a multiple of crops_a_sheet".into());
         }
+        if self.images > 0 && self.crops_a_sheet != 1 {
+            return fail("with a set of images, crops_a_sheet has to be 1".into());
+        }
+        if self.validation_sheets == 0 && self.images == 0 {
+            return fail("validation_sheets is 0, which needs a set of images".into());
+        }
         if !(0.0..=1.0).contains(&self.svg_share) {
             return fail("svg_share is between 0 and 1".into());
         }
@@ -124,6 +138,11 @@ impl TrainConfig {
             return fail("scans is between 0 and 1, and rate is positive".into());
         }
         Ok(())
+    }
+
+    /// Whether some of the data are scans.
+    pub fn has_scans(&self) -> bool {
+        self.scans > 0.0
     }
 
     /// The learning rate of a step.

@@ -6,6 +6,7 @@ use crate::ground_truth::{FieldTruth, Place};
 use crate::raster::Raster;
 use crate::unet::{Features, Input, features};
 use num_complex::Complex32;
+use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -101,12 +102,23 @@ fn unit(z: Complex32) -> Complex32 {
     if z.norm() > 1e-6 { z / z.norm() } else { z }
 }
 
-/// The crops of one drawing. The same seed and number give the same crops.
-fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
+/// The random numbers of a sheet of the training data.
+pub(super) fn stream(config: &TrainConfig, number: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
     rng.set_stream(number);
-    let Sight { ink, truth } = sight(&mut rng, source, config, |rng| rng.random_bool(config.scans));
-    let mut sheet = Sample::new(&ink, &truth, config.network.input);
+    rng
+}
+
+/// The sheet that random numbers draw for training.
+pub(super) fn sheet(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig) -> Sight {
+    sight(rng, source, config, |rng| rng.random_bool(config.scans))
+}
+
+/// The crops of one drawing. The same seed and number give the same crops.
+fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
+    let mut rng = stream(config, number);
+    let Sight { ink, truth } = sheet(&mut rng, source, config);
+    let mut whole = Sample::new(&ink, &truth, config.network.input);
     let (width, height) = ink.size();
     let mut spots = || (rng.random_range(0..=width - config.crop), rng.random_range(0..=height - config.crop));
     let inked = |x: usize, y: usize| {
@@ -118,16 +130,37 @@ fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
             // Of a few spots the first with some ink on it.
             let tries: Vec<_> = (0..6).map(|_| spots()).collect();
             let (x, y) = *tries.iter().find(|(x, y)| inked(*x, *y) > 60).unwrap_or(&tries[0]);
-            sheet.cropped((width, height), x, y, config.crop)
+            whole.cropped((width, height), x, y, config.crop)
         })
         .collect()
 }
 
+/// The numbers of the sheets of a step.
+fn sheets(config: &TrainConfig, step: usize) -> Vec<u64> {
+    let count = config.batch / config.crops_a_sheet;
+    let numbers = step * count..(step + 1) * count;
+    if config.images == 0 {
+        return numbers.map(|n| n as u64).collect();
+    }
+    let mut epoch = (usize::MAX, Vec::new());
+    let number = |n: usize| {
+        let (pass, place) = (n / config.images, n % config.images);
+        if epoch.0 != pass {
+            let mut order: Vec<u64> = (0..config.images as u64).collect();
+            let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x0bde_2ed0);
+            rng.set_stream(pass as u64);
+            order.shuffle(&mut rng);
+            epoch = (pass, order);
+        }
+        epoch.1[place]
+    };
+    numbers.map(number).collect()
+}
+
 /// The batch of a step.
 pub fn batch(config: &TrainConfig, source: &Source, step: usize) -> Sample {
-    let sheets = (config.batch / config.crops_a_sheet) as u64;
-    let first = step as u64 * sheets;
-    let parts: Vec<Vec<Sample>> = (first..first + sheets).into_par_iter().map(|n| crops(config, source, n)).collect();
+    let sheets = sheets(config, step).into_par_iter();
+    let parts: Vec<Vec<Sample>> = sheets.map(|n| crops(config, source, n)).collect();
     Sample::stacked(parts.into_iter().flatten())
 }
 
@@ -136,8 +169,15 @@ pub fn batches(config: &TrainConfig, source: &Arc<Source>, steps: Range<usize>) 
     let (sender, receiver) = sync_channel(4);
     let (config, source) = (config.clone(), source.clone());
     thread::spawn(move || {
+        let set: Vec<Vec<Sample>> =
+            (0..config.images as u64).into_par_iter().map(|n| crops(&config, &source, n)).collect();
         for step in steps {
-            if sender.send(batch(&config, &source, step)).is_err() {
+            let sample = if set.is_empty() {
+                batch(&config, &source, step)
+            } else {
+                Sample::stacked(sheets(&config, step).into_iter().flat_map(|n| set[n as usize].clone()))
+            };
+            if sender.send(sample).is_err() {
                 return;
             }
         }

@@ -37,6 +37,7 @@ pub struct Trainer {
     config: TrainConfig,
     source: Arc<Source>,
     skipped: Vec<Skipped>,
+    validator: Validator,
     dir: PathBuf,
     device: Device,
     model: UNet,
@@ -74,6 +75,7 @@ impl Trainer {
         let device = device.clone().autodiff();
         let optimizer = || AdamConfig::new().with_epsilon(1e-8).init();
         let mut run = Self {
+            validator: Validator::new(&config, &source),
             source: Arc::new(source),
             skipped,
             dir: dir.into(),
@@ -141,7 +143,6 @@ impl Trainer {
     /// [`Error::Train`] when the loss is no longer a number; whatever writing says.
     pub fn run(&mut self, mut progress: impl FnMut(&Progress) -> bool) -> Result<()> {
         let plain = self.device.clone().inner();
-        let validator = Validator::new(&self.config, &self.source);
         let feed = batches(&self.config, &self.source, self.state.step..self.config.steps);
         let mut saved = Instant::now();
         while self.state.step < self.config.steps {
@@ -151,7 +152,7 @@ impl Trainer {
             self.optimise(&batch)?;
             let done = self.state.step;
             let due = done.is_multiple_of(self.config.validate_every) || done == self.config.steps;
-            let validation = due.then(|| validator.run(&self.model.valid(), &plain));
+            let validation = due.then(|| self.validator.run(&self.model.valid(), &plain));
             self.state.seconds += begin.elapsed().as_secs_f64();
             let report = self.report(validation);
             if let Some(validation) = validation {
@@ -214,6 +215,8 @@ impl Trainer {
             self.state.best = Some(validation.score());
             self.state.stale = 0;
             unet::save(&self.dir.join("best.bpk"), &self.config.network, &model)?;
+            let device = self.device.clone().inner();
+            self.validator.draw_examples(&model, &device, &self.dir.join("examples.png"))?;
         }
         let path = self.dir.join("metrics.csv");
         append_metrics(&path, report, validation).map_err(|cause| Error::Write { path: path.clone(), cause })?;
@@ -221,29 +224,21 @@ impl Trainer {
     }
 }
 
+const ERRORS: [&str; 5] = ["ink_deg", "junction_deg", "mse", "smoothness", "ink_share"];
+
 fn append_metrics(path: &Path, report: &Progress, validation: &Validation) -> std::io::Result<()> {
     let fresh = !path.exists();
+    let kinds = [("clean", Some(validation.clean)), ("scan", validation.scan)];
+    let kinds = || kinds.into_iter().filter_map(|(name, errors)| Some((name, errors?)));
     let mut file = OpenOptions::new().create(true).append(true).open(path)?;
     if fresh {
-        writeln!(
-            file,
-            "step,seconds,loss,alignment,angle_deg,smoothness,clean_ink_deg,clean_junction_deg,clean_mse,\
-             scan_ink_deg,scan_junction_deg,scan_mse"
-        )?;
+        let names: String = kinds().flat_map(|(kind, _)| ERRORS.map(|e| format!(",{kind}_{e}"))).collect();
+        writeln!(file, "step,seconds,loss,alignment,angle_deg,smoothness{names}")?;
     }
     let [loss, alignment, angle, smoothness] = report.loss;
-    let (c, s) = (&validation.clean, &validation.scan);
-    writeln!(
-        file,
-        "{},{:.0},{loss:.6},{alignment:.6},{:.4},{smoothness:.6},{:.4},{:.4},{:.6},{:.4},{:.4},{:.6}",
-        report.step,
-        report.seconds,
-        angle.to_degrees(),
-        c.ink,
-        c.junction,
-        c.mse,
-        s.ink,
-        s.junction,
-        s.mse
-    )
+    let angle = angle.to_degrees();
+    let of_kinds = kinds().flat_map(|(_, e)| [e.ink, e.junction, e.mse, e.smoothness, e.ink_share]);
+    let figures: String =
+        [loss, alignment, angle, smoothness].into_iter().chain(of_kinds).map(|v| format!(",{v:.4e}")).collect();
+    writeln!(file, "{},{:.0}{figures}", report.step, report.seconds)
 }

@@ -69,6 +69,9 @@ impl Source {
 
     /// A sheet of some drawing.
     fn drawing(&self, rng: &mut impl Rng, config: &TrainConfig) -> Drawing {
+        if config.primitives > 0 {
+            return synth::primitives(rng, config.sheet, config.primitives);
+        }
         if !self.drawings.is_empty() && rng.random_bool(config.svg_share) {
             let drawing = &self.drawings[rng.random_range(0..self.drawings.len())];
             if let Some(sheet) = synth::placed(rng, drawing, config.sheet) {

@@ -17,7 +17,7 @@ fn tiny() -> TrainConfig {
         warmup: 2,
         validate_every: 3,
         validation_sheets: 2,
-        network: UNetConfig { width: 4, levels: 1, patch: 2, input: Input::Tensor },
+        network: UNetConfig { width: 4, levels: 1, patch: 2, input: Input::Tensor, ..UNetConfig::default() },
         ..TrainConfig::default()
     }
 }
@@ -127,6 +127,37 @@ fn training_on_one_batch_makes_the_loss_small() {
         model = optimizer.step(1e-2, model, gradients);
     }
     assert!(losses[59] < 0.5 * losses[0], "{} {}", losses[0], losses[59]);
+}
+
+#[test]
+fn one_image_is_learned_by_heart() {
+    let config = TrainConfig::read(Path::new("samples/paper/one.toml")).unwrap();
+    let mut last = None;
+    let model = by_heart(&config, &Device::flex(), |iteration| last = Some(iteration)).unwrap();
+    let last = last.unwrap();
+    assert_eq!(last.number, 50);
+    assert!(last.on_all <= 1e-5, "{last:?}");
+    let error = Validator::new(&config, &Source::synthetic()).run(&model, &Device::flex()).clean;
+    assert!(error.ink < 1.0 && error.mse < 1e-3, "{error:?}");
+}
+
+#[test]
+fn a_set_of_images_is_seen_once_an_epoch() {
+    let config = TrainConfig { images: 6, primitives: 2, crops_a_sheet: 1, batch: 3, sheet: 16, scans: 0.0, ..tiny() };
+    let source = Arc::new(Source::synthetic());
+    let received: Vec<Sample> = batches(&config, &source, 0..4).iter().collect();
+    assert!(received.iter().enumerate().all(|(step, s)| s.input == batch(&config, &source, step).input));
+    let images = |steps: &[Sample]| {
+        let n = received[0].input.len() / 3;
+        let mut all: Vec<Vec<u32>> =
+            steps.iter().flat_map(|s| s.input.chunks(n)).map(|i| i.iter().map(|v| v.to_bits()).collect()).collect();
+        all.sort();
+        all.dedup();
+        all
+    };
+    let (first, second) = (images(&received[..2]), images(&received[2..]));
+    assert_eq!((first.len(), &first), (6, &second));
+    assert_ne!(received[0].input, received[2].input);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// Shape of a network.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct UNetConfig {
     /// Channels of the first level; each level down has twice as many.
@@ -25,18 +25,21 @@ pub struct UNetConfig {
     pub patch: usize,
     /// What the network is shown.
     pub input: Input,
+    /// Share of the newest batch in the norms' running statistics. Crops differ much from one another, so the
+    /// default averages over many batches; 1 fits training on one image.
+    pub momentum: f64,
 }
 
 impl Default for UNetConfig {
     fn default() -> Self {
-        Self { width: 16, levels: 3, patch: 2, input: Input::Tensor }
+        Self { width: 16, levels: 3, patch: 2, input: Input::Tensor, momentum: 0.03 }
     }
 }
 
 impl UNetConfig {
     /// The network of the paper.
     pub fn paper() -> Self {
-        Self { width: 16, levels: 4, patch: 1, input: Input::Ink }
+        Self { width: 16, levels: 4, patch: 1, input: Input::Ink, ..Self::default() }
     }
 
     /// Image sides have to be multiples of this many pixels.
@@ -49,10 +52,12 @@ impl UNetConfig {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let width = |level: usize| self.width << level;
         let cells = self.patch * self.patch;
-        let mut down = vec![Block::new(self.input.channels() * cells, width(0), device, &mut rng)];
-        down.extend((1..=self.levels).map(|l| Block::new(width(l - 1), width(l), device, &mut rng)));
+        let mut down = vec![Block::new(self, [self.input.channels() * cells, width(0)], device, &mut rng)];
+        down.extend((1..=self.levels).map(|l| Block::new(self, [width(l - 1), width(l)], device, &mut rng)));
         let mut up = Vec::new();
-        up.extend((0..self.levels).rev().map(|l| Block::new(width(l + 1) + width(l), width(l), device, &mut rng)));
+        up.extend(
+            (0..self.levels).rev().map(|l| Block::new(self, [width(l + 1) + width(l), width(l)], device, &mut rng)),
+        );
         let head = Conv2dConfig::new([width(0), 4 * cells], [1, 1]).with_initializer(Initializer::Zeros);
         let head = filled(head.init(device), device, &mut rng);
         UNet { down, up, head, patch: self.patch }
@@ -73,13 +78,12 @@ pub struct Block {
 }
 
 impl Block {
-    fn new(input: usize, output: usize, device: &Device, rng: &mut ChaCha8Rng) -> Self {
+    fn new(config: &UNetConfig, [input, output]: [usize; 2], device: &Device, rng: &mut ChaCha8Rng) -> Self {
         let mut conv = |channels| {
             let config = Conv2dConfig::new(channels, [3, 3]).with_bias(false).with_initializer(Initializer::Zeros);
             filled(config.with_padding(PaddingConfig2d::Explicit(1, 1, 1, 1)).init(device), device, rng)
         };
-        // Crops differ much from one another, so the running statistics average over many batches.
-        let norm = || BatchNormConfig::new(output).with_momentum(0.03).init(device);
+        let norm = || BatchNormConfig::new(output).with_momentum(config.momentum).init(device);
         Self { conv1: conv([input, output]), norm1: norm(), conv2: conv([output, output]), norm2: norm() }
     }
 
@@ -175,7 +179,7 @@ mod tests {
     fn every_configuration_keeps_the_size() {
         let device = Device::flex();
         for (patch, levels, input) in [(1, 2, Input::Ink), (2, 2, Input::Tensor), (2, 3, Input::Ink)] {
-            let config = UNetConfig { width: 4, levels, patch, input };
+            let config = UNetConfig { width: 4, levels, patch, input, ..UNetConfig::default() };
             let side = 2 * config.multiple();
             let x = Tensor::random([2, input.channels(), side, 2 * side], Distribution::Default, &device);
             assert_eq!(config.init(&device, 1).forward(x).dims(), [2, 4, side, 2 * side]);

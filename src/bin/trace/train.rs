@@ -108,14 +108,10 @@ fn show(bar: &ProgressBar, progress: &Progress, quiet: bool) {
     if quiet {
         return;
     }
+    let scan = validation.scan.map_or_else(String::new, |e| format!("; scan {:.2}, {:.2}", e.ink, e.junction));
     let line = format!(
-        "step {}, {:.0} s: loss {loss:.4}; clean {:.2} deg on ink, {:.2} near junctions; scan {:.2}, {:.2}",
-        progress.step,
-        progress.seconds,
-        validation.clean.ink,
-        validation.clean.junction,
-        validation.scan.ink,
-        validation.scan.junction
+        "step {}, {:.0} s: loss {loss:.4}; clean {:.2} deg on ink, {:.2} near junctions{scan}",
+        progress.step, progress.seconds, validation.clean.ink, validation.clean.junction
     );
     if bar.is_hidden() { eprintln!("{line}") } else { bar.println(line) }
 }

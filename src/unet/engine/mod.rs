@@ -289,14 +289,14 @@ mod tests {
     fn the_engine_agrees_with_the_tensor_library() {
         for (width, levels, patch, input) in [(16, 2, 2, Input::Tensor), (8, 2, 1, Input::Ink), (12, 1, 2, Input::Ink)]
         {
-            let worst = compare(UNetConfig { width, levels, patch, input });
+            let worst = compare(UNetConfig { width, levels, patch, input, ..UNetConfig::default() });
             assert!(worst < 1e-4, "w{width} d{levels} p{patch}: {worst}");
         }
     }
 
     #[test]
     fn what_is_not_computed_counts_as_blank() {
-        let config = UNetConfig { width: 16, levels: 2, patch: 2, input: Input::Ink };
+        let config = UNetConfig { width: 16, levels: 2, patch: 2, input: Input::Ink, ..UNetConfig::default() };
         let engine = Engine::new(config, &network(&config));
         let (n, m) = (17, config.multiple());
         let side = n * m;
