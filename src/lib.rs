@@ -67,6 +67,8 @@
 //! # Ok::<(), fieldtrace::Error>(())
 //! ```
 
+pub mod batch;
+pub mod cancel;
 pub mod clean;
 pub mod drawing;
 pub mod error;

@@ -8,6 +8,7 @@
 //! small prior pulls the second root to the normal of the first.
 
 use super::FieldEstimator;
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::PolyVectorField;
@@ -39,9 +40,15 @@ impl FieldEstimator for StructureTensor {
     }
 
     fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
+        self.estimate_until(image, &Cancel::default())
+    }
+
+    fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
+        cancel.check()?;
         let sigma = (self.reach * image.line_width).max(1.2) as f32;
         let gradients = gradient_moments(&image.ink);
-        let moments = blur_on(&gradients, &image.mask, sigma);
+        cancel.check()?;
+        let moments = blur_on(&gradients, &image.mask, sigma, cancel)?;
         let solved: Vec<_> = moments.data().par_iter().map(|m| self.solve(m)).collect();
         let (width, height) = image.ink.size();
         let field = |f: fn(&(Complex32, Complex32, f32)) -> Complex32| {
@@ -107,7 +114,12 @@ fn gradient_moments(ink: &Raster<f32>) -> Raster<Moments> {
 }
 
 /// Gaussian blur of the moments, computed where the mask is set only.
-fn blur_on(moments: &Raster<Moments>, mask: &crate::raster::Mask, sigma: f32) -> Raster<Moments> {
+fn blur_on(
+    moments: &Raster<Moments>,
+    mask: &crate::raster::Mask,
+    sigma: f32,
+    cancel: &Cancel,
+) -> Result<Raster<Moments>> {
     let radius = (2.5 * sigma).ceil() as i64;
     let kernel: Vec<f32> = (-radius..=radius).map(|d| (-0.5 * (d as f32 / sigma).powi(2)).exp()).collect();
     let (width, height) = moments.size();
@@ -129,6 +141,7 @@ fn blur_on(moments: &Raster<Moments>, mask: &crate::raster::Mask, sigma: f32) ->
             })
         })
         .collect();
+    cancel.check()?;
     let vertical: Vec<Moments> = (0..height)
         .into_par_iter()
         .flat_map_iter(|y| {
@@ -145,7 +158,8 @@ fn blur_on(moments: &Raster<Moments>, mask: &crate::raster::Mask, sigma: f32) ->
             })
         })
         .collect();
-    Raster::from_vec(width, height, vertical).expect("the blur keeps the size")
+    cancel.check()?;
+    Ok(Raster::from_vec(width, height, vertical).expect("the blur keeps the size"))
 }
 
 /// Which pixels of a row have a mask pixel within `radius` rows in their column.

@@ -11,9 +11,12 @@ use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::write::{SvgOptions, to_svg, write_file};
 use std::path::Path;
 
+/// The warning about a drawing without strokes.
+pub(crate) const EMPTY: &str = "no ink was found, the drawing is empty";
+
 /// Reads, traces and writes one drawing.
 pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
-    let Some(input) = &args.input else { return Err(Failure::Usage("no input is given".into())) };
+    let [input] = args.inputs.as_slice() else { return Err(Failure::Usage("no input is given".into())) };
     let name = target::name(input);
     let failed = |e: fieldtrace::Error| Failure::of(&name, &e);
     let vectorizer = Vectorizer::new(args::options(&args.clean, Some(&args.fit))).map_err(failed)?;
@@ -27,7 +30,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     write_file(&output, svg.as_bytes()).map_err(failed)?;
     stages.done("write", || format!("{} bytes to {}", svg.len(), target::name(&output)));
     if drawing.strokes.is_empty() && drawing.fills.is_empty() && !args.talk.quiet {
-        eprintln!("trace: {name}: warning: no ink was found, the drawing is empty");
+        eprintln!("trace: {name}: warning: {EMPTY}");
     }
     Ok(())
 }
