@@ -82,6 +82,7 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
 /// # Errors
 /// The token's.
 pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
+    cancel.check()?;
     let light = if has_contrast(&scan.gray) { upright(&scan.gray, options.invert) } else { scan.gray.map(|_| 1.0) };
     let paper = paper::paper_level(&light);
     cancel.check()?;
@@ -104,6 +105,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         cancel.check()?;
         mask = ink.map(|i| i > threshold::level(noise));
         depth = self::depth(&mask);
+        cancel.check()?;
         line_width = width::line_width(&ink, &mask, &depth);
     }
     cancel.check()?;
