@@ -1,6 +1,7 @@
 //! The one error type of the library.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Why an input could not be traced, one variant per failing stage.
 ///
@@ -87,6 +88,36 @@ pub enum Error {
         /// Name of the option as on the command line, without dashes.
         option: &'static str,
         /// The range that it must keep to.
+        reason: String,
+    },
+    /// The inputs and the folder of a batch do not make a plan.
+    #[error("{reason}")]
+    Plan {
+        /// What is wrong, in one line.
+        reason: String,
+    },
+    /// A folder of a batch could not be listed.
+    #[error("{}: cannot be listed", path.display())]
+    List {
+        /// The folder, or what in it could not be reached.
+        path: PathBuf,
+        /// What the operating system said.
+        #[source]
+        cause: std::io::Error,
+    },
+    /// The work was stopped from outside.
+    #[error("interrupted")]
+    Cancelled,
+    /// The work took longer than it was allowed to.
+    #[error("given up after {} seconds", limit.as_secs_f64())]
+    TimedOut {
+        /// The time that it was allowed.
+        limit: Duration,
+    },
+    /// The work ended in a fault of the program or of the caller's own part in it.
+    #[error("a fault in the program: {reason}")]
+    Panicked {
+        /// What the fault said of itself, in one line.
         reason: String,
     },
     /// A result could not be written.

@@ -1,5 +1,6 @@
 //! Where a caller can look at, change or refuse what each stage made.
 
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::drawing::Drawing;
 use crate::error::Result;
@@ -13,6 +14,10 @@ use crate::streamline::Streamline;
 /// [`crate::Error::Vetoed`]; [`veto`] builds one.
 #[allow(unused_variables)]
 pub trait Observer {
+    /// What the trace polls between and inside its stages; it stops with the token's error.
+    fn cancel(&self) -> Cancel {
+        Cancel::default()
+    }
     /// After cleaning.
     ///
     /// # Errors

@@ -40,6 +40,8 @@
 //!
 //! The same input, options and version give the same result on any number of threads.
 //!
+//! [`batch`] traces many inputs in one go, and a [`cancel::Cancel`] stops a trace between and inside its stages.
+//!
 //! # Hooks
 //!
 //! A [`hooks::Observer`] sees the result of each stage and may change or refuse it. A [`estimate::FieldEstimator`] is
@@ -67,6 +69,8 @@
 //! # Ok::<(), fieldtrace::Error>(())
 //! ```
 
+pub mod batch;
+pub mod cancel;
 pub mod clean;
 pub mod drawing;
 pub mod error;

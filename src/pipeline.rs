@@ -1,5 +1,6 @@
 //! The whole way from a scan to a drawing.
 
+use crate::cancel::Cancel;
 use crate::clean::{self, LineImage};
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
@@ -58,9 +59,10 @@ impl Vectorizer {
     /// # Errors
     /// Whatever the estimator or the observer says.
     pub fn trace_observed(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<Drawing> {
-        let mut image = clean::clean(scan, &self.options);
+        let cancel = observer.cancel();
+        let mut image = clean::clean_until(scan, &self.options, &cancel)?;
         observer.on_line_image(&mut image)?;
-        let field = self.estimate(&image)?;
+        let field = self.estimate(&image, &cancel)?;
         self.follow(scan, &image, field, observer)
     }
 
@@ -77,7 +79,7 @@ impl Vectorizer {
         if field.size() != scan.gray.size() {
             return Err(Error::FieldSize { field: field.size(), image: scan.gray.size() });
         }
-        let mut image = clean::clean(scan, &self.options);
+        let mut image = clean::clean_until(scan, &self.options, &observer.cancel())?;
         observer.on_line_image(&mut image)?;
         let (width, height) = image.ink.size();
         self.follow(scan, &image, field.resized(width, height), observer)
@@ -90,11 +92,11 @@ impl Vectorizer {
     pub fn field(&self, scan: &Scan) -> Result<PolyVectorField> {
         let image = clean::clean(scan, &self.options);
         let (width, height) = scan.gray.size();
-        Ok(self.estimate(&image)?.resized(width, height))
+        Ok(self.estimate(&image, &Cancel::default())?.resized(width, height))
     }
 
-    fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
-        let field = self.estimator.estimate(image)?;
+    fn estimate(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
+        let field = self.estimator.estimate_until(image, cancel)?;
         if field.size() != image.ink.size() {
             return Err(Error::FieldSize { field: field.size(), image: image.ink.size() });
         }
@@ -109,16 +111,17 @@ impl Vectorizer {
         observer: &mut dyn Observer,
     ) -> Result<Drawing> {
         observer.on_field(image, &mut field)?;
+        let cancel = observer.cancel();
         let frames = FrameField::new(field);
         let mut streamlines = Vec::new();
-        for mut streamline in streamline::trace(image, &frames) {
+        for mut streamline in streamline::trace(image, &frames, &cancel)? {
             if observer.on_streamline(image, &mut streamline)? {
                 streamlines.push(streamline);
             }
         }
-        let mut graph = graph::build(image, &streamlines, &self.options);
+        let mut graph = graph::build(image, &streamlines, &self.options, &cancel)?;
         observer.on_graph(image, &mut graph)?;
-        let mut drawing = fit::fit(image, &graph, &self.options).scaled(1.0 / image.scale);
+        let mut drawing = fit::fit(image, &graph, &self.options, &cancel)?.scaled(1.0 / image.scale);
         (drawing.width, drawing.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
         drawing.dpi = scan.dpi;
         observer.on_drawing(&mut drawing)?;

@@ -102,16 +102,19 @@ impl Raster<f32> {
     /// Bilinear interpolation between pixel centres; samples outside the grid count as 0.
     pub fn sample(&self, p: Point) -> f32 {
         let (fx, fy) = (p.x - 0.5, p.y - 0.5);
-        let (x, y) = (fx.floor(), fy.floor());
-        let (tx, ty) = ((fx - x) as f32, (fy - y) as f32);
-        let (x, y) = (x as i64, y as i64);
-        if x >= 0 && y >= 0 && x + 1 < self.width as i64 && y + 1 < self.height as i64 {
+        // Nearly all samples lie inside, where cutting off is rounding down, at a fraction of the time.
+        if fx >= 0.0 && fy >= 0.0 && fx < self.width as f64 - 1.0 && fy < self.height as f64 - 1.0 {
+            let (x, y) = (fx as i64, fy as i64);
+            let (tx, ty) = ((fx - x as f64) as f32, (fy - y as f64) as f32);
             let i = y as usize * self.width + x as usize;
             let (a, b) = (self.data[i], self.data[i + 1]);
             let (c, d) = (self.data[i + self.width], self.data[i + self.width + 1]);
             let top = a + (b - a) * tx;
             return top + (c + (d - c) * tx - top) * ty;
         }
+        let (x, y) = (fx.floor(), fy.floor());
+        let (tx, ty) = ((fx - x) as f32, (fy - y) as f32);
+        let (x, y) = (x as i64, y as i64);
         let v = |x, y| self.get(x, y).unwrap_or(0.0);
         let top = v(x, y) * (1.0 - tx) + v(x + 1, y) * tx;
         top * (1.0 - ty) + (v(x, y + 1) * (1.0 - tx) + v(x + 1, y + 1) * tx) * ty

@@ -11,7 +11,9 @@ mod width;
 pub(crate) use blur::unblurred_width;
 pub(crate) use width::is_ridge;
 
+use crate::cancel::Cancel;
 use crate::drawing::Fill;
+use crate::error::Result;
 use crate::load::Scan;
 use crate::options::{Invert, Options};
 use crate::raster::{Mask, Raster};
@@ -72,30 +74,49 @@ impl LineImage {
 ///
 /// A scan without ink gives an empty mask and a line width of 1.
 pub fn clean(scan: &Scan, options: &Options) -> LineImage {
+    clean_until(scan, options, &Cancel::default()).expect("nobody else holds the token")
+}
+
+/// Cleans a scan unless told to stop.
+///
+/// # Errors
+/// The token's.
+pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
+    cancel.check()?;
     let light = if has_contrast(&scan.gray) { upright(&scan.gray, options.invert) } else { scan.gray.map(|_| 1.0) };
     let paper = paper::paper_level(&light);
+    cancel.check()?;
     let mut ink = paper::divide(&light, &paper);
+    cancel.check()?;
     let noise = threshold::grain(&ink);
     if noise > 0.0 {
         // Just enough to join the grain of a pencil line: the half-width of a pixel's own footprint.
         ink = smooth(ink, 0.7);
     }
+    cancel.check()?;
     let (mut ink, mut mask) = threshold::binarise(ink, noise, options.threshold);
+    cancel.check()?;
     let mut depth = depth(&mask);
+    cancel.check()?;
     let mut line_width = width::line_width(&ink, &mask, &depth);
     let scale = resample::scale_for(&ink, &mask, &depth, line_width);
     if scale != 1.0 {
         ink = resample::resize(ink, scale);
+        cancel.check()?;
         mask = ink.map(|i| i > threshold::level(noise));
         depth = self::depth(&mask);
+        cancel.check()?;
         line_width = width::line_width(&ink, &mask, &depth);
     }
+    cancel.check()?;
     specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
+    cancel.check()?;
     let solids = solids::take(&mut mask, &ink, &depth, line_width);
     let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
+    cancel.check()?;
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
     let ink = ink.map(|i| i.min(DARKEST));
-    LineImage { ink, mask, depth, line_width, scale, noise, blur, solids }
+    Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids })
 }
 
 /// Whether there is anything on the page: a scan of one tone has no ink, whatever the tone.

@@ -8,6 +8,7 @@ pub use tensor::StructureTensor;
 #[cfg(feature = "learned")]
 pub use unet::UNet;
 
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::PolyVectorField;
@@ -30,4 +31,13 @@ pub trait FieldEstimator: Send + Sync {
     /// # Errors
     /// [`crate::Error::Estimate`] when no field can be given.
     fn estimate(&self, image: &LineImage) -> Result<PolyVectorField>;
+
+    /// The same unless told to stop; one that takes long polls the token on its way.
+    ///
+    /// # Errors
+    /// Those of [`Self::estimate`] and the token's.
+    fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
+        cancel.check()?;
+        self.estimate(image)
+    }
 }

@@ -1,6 +1,7 @@
 //! A field from local gradients, without a network: the fourth-order structure tensor.
 
 use super::{FieldEstimator, smoothed};
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::PolyVectorField;
@@ -30,9 +31,15 @@ impl FieldEstimator for StructureTensor {
     }
 
     fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
+        self.estimate_until(image, &Cancel::default())
+    }
+
+    fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
+        cancel.check()?;
         let sigma = (self.reach * image.line_width).max(1.2) as f32;
         let gradients = gradients(&image.ink);
-        let moments = blur_on(&gradients, &image.mask, sigma);
+        cancel.check()?;
+        let moments = blur_on(&gradients, &image.mask, sigma, cancel)?;
         let solved: Vec<_> = moments.data().par_iter().map(|m| fit(m, self.prior)).collect();
         let (width, height) = image.ink.size();
         let field = |f: fn(&(Complex32, Complex32, f32)) -> Complex32| {
@@ -44,7 +51,12 @@ impl FieldEstimator for StructureTensor {
 }
 
 /// Gaussian blur of the moments, computed where the mask is set only.
-fn blur_on(moments: &Raster<Moments>, mask: &crate::raster::Mask, sigma: f32) -> Raster<Moments> {
+fn blur_on(
+    moments: &Raster<Moments>,
+    mask: &crate::raster::Mask,
+    sigma: f32,
+    cancel: &Cancel,
+) -> Result<Raster<Moments>> {
     let radius = (2.5 * sigma).ceil() as i64;
     let kernel: Vec<f32> = (-radius..=radius).map(|d| (-0.5 * (d as f32 / sigma).powi(2)).exp()).collect();
     let (width, height) = moments.size();
@@ -66,6 +78,7 @@ fn blur_on(moments: &Raster<Moments>, mask: &crate::raster::Mask, sigma: f32) ->
             })
         })
         .collect();
+    cancel.check()?;
     let vertical: Vec<Moments> = (0..height)
         .into_par_iter()
         .flat_map_iter(|y| {
@@ -82,7 +95,8 @@ fn blur_on(moments: &Raster<Moments>, mask: &crate::raster::Mask, sigma: f32) ->
             })
         })
         .collect();
-    Raster::from_vec(width, height, vertical).expect("the blur keeps the size")
+    cancel.check()?;
+    Ok(Raster::from_vec(width, height, vertical).expect("the blur keeps the size"))
 }
 
 /// Which pixels of a row have a mask pixel within `radius` rows in their column.

@@ -1,6 +1,7 @@
 //! The field from the trained network.
 
 use super::{FieldEstimator, smoothed};
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::{PolyVectorField, decode};
@@ -75,6 +76,10 @@ impl FieldEstimator for UNet {
     }
 
     fn estimate(&self, image: &LineImage) -> Result<PolyVectorField> {
+        self.estimate_until(image, &Cancel::default())
+    }
+
+    fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
         let (width, height) = image.ink.size();
         let ink = shown(image);
         let grid = Grid::new(width, height, self.config.multiple());
@@ -83,7 +88,8 @@ impl FieldEstimator for UNet {
             Runner::Engine(engine) => {
                 let spare = Mutex::new(Vec::<Scratch>::new());
                 let run = |&at: &(usize, usize)| {
-                    let Some(tile) = Tile::new(&grid, at, &image.mask) else { return Vec::new() };
+                    let tile = Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
+                    let Some(tile) = tile else { return Vec::new() };
                     let mut scratch = lock(&spare).pop().unwrap_or_default();
                     let pixels = tile.by_engine(engine, &mut scratch, &ink, self.config);
                     lock(&spare).push(scratch);
@@ -93,12 +99,13 @@ impl FieldEstimator for UNet {
             }
             Runner::Burn(model, device) => {
                 let run = |&at: &(usize, usize)| {
-                    let tile = Tile::new(&grid, at, &image.mask);
+                    let tile = Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
                     tile.map_or_else(Vec::new, |t| t.by_burn(model, device, &ink, self.config))
                 };
                 tiles.iter().map(run).collect()
             }
         };
+        cancel.check()?;
         Ok(smoothed(&assemble(width, height, &image.mask, parts)?, image))
     }
 }

@@ -13,8 +13,10 @@ mod segmentation;
 mod solid;
 mod stroke;
 
+use crate::cancel::Cancel;
 use crate::clean::{LineImage, unblurred_width};
 use crate::drawing::{Centreline, Color, Drawing, Stroke};
+use crate::error::Result;
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
 use rayon::prelude::*;
@@ -37,19 +39,24 @@ impl Tolerance {
 }
 
 /// Fits every trail of a graph. The drawing is in pixels of the line image.
-pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing {
+///
+/// # Errors
+/// The token's.
+pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Drawing> {
     let tolerance = Tolerance { fit: (options.detail * image.line_width).max(0.1), width: image.line_width };
     let mut drawing = Drawing::new(image.ink.width() as f64, image.ink.height() as f64);
     let fitted: Vec<Option<(Centreline, f64)>> = graph
         .trails
         .par_iter()
         .map(|trail| {
+            cancel.check()?;
             let walk = graph.walk(trail);
-            let centreline = stroke::fit_trail(&walk, trail.closed, tolerance)?;
-            let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width);
-            Some((centreline, unblurred_width(measured, image.blur)))
+            Ok(stroke::fit_trail(&walk, trail.closed, tolerance).map(|centreline| {
+                let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width);
+                (centreline, unblurred_width(measured, image.blur))
+            }))
         })
-        .collect();
+        .collect::<Result<_>>()?;
     let lines =
         fitted.into_iter().flatten().map(|(centreline, width)| Stroke { centreline, width, color: Color::BLACK });
     let dots = graph.dots.iter().map(|&(centre, diameter)| Stroke {
@@ -60,7 +67,7 @@ pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing
     drawing.strokes = lines.chain(dots).collect();
     set_widths(&mut drawing, options.width, image.scale);
     drawing.fills = image.solids.iter().map(|s| solid::smooth(s, tolerance)).collect();
-    drawing
+    Ok(drawing)
 }
 
 /// Replaces measured widths where one width is asked for.

@@ -46,12 +46,13 @@ pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
     for i in 0..knots.len() - 1 {
         let mut misses = 0;
         for j in i + 1..knots.len() {
-            let (price, kind) = cheapest(samples, knots[i], knots[j], tolerance, deviation);
+            let worth = cost[j] - cost[i];
+            let (price, kind) = cheapest(samples, knots[i], knots[j], tolerance, deviation, worth);
             if cost[i] + price < cost[j] {
                 cost[j] = cost[i] + price;
                 best[j] = Some((i, kind));
             }
-            misses = if price > HOPELESS { misses + 1 } else { 0 };
+            misses = if price > HOPELESS && worth > CUBIC { misses + 1 } else { 0 };
             if misses >= 3 {
                 break;
             }
@@ -85,8 +86,16 @@ fn knots(samples: &Samples, tolerance: Tolerance) -> Vec<usize> {
     knots
 }
 
-/// The cheapest single piece over samples `from..=to`.
-fn cheapest(samples: &Samples, from: usize, to: usize, tolerance: Tolerance, deviation: f64) -> (f64, Kind) {
+/// The cheapest single piece over samples `from..=to`. Fitting a cubic takes by far the longest: it is not tried
+/// where even a perfect one would cost more than the piece is worth.
+fn cheapest(
+    samples: &Samples,
+    from: usize,
+    to: usize,
+    tolerance: Tolerance,
+    deviation: f64,
+    worth: f64,
+) -> (f64, Kind) {
     // Neighbouring points share ink: about one in a line width is independent.
     let independent = (samples.length() / samples.len() as f64 / tolerance.width).min(1.0);
     let price = |base: f64, error: f64| base + error * independent / (deviation * deviation);
@@ -103,7 +112,7 @@ fn cheapest(samples: &Samples, from: usize, to: usize, tolerance: Tolerance, dev
             cheapest = (arc, Kind::Arc);
         }
     }
-    if cheapest.0 <= CUBIC {
+    if cheapest.0 <= CUBIC || worth <= CUBIC {
         return cheapest;
     }
     let ends = Ends { start: near(samples, from), end: near(samples, to), start_tangent: None, end_tangent: None };

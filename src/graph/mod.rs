@@ -11,7 +11,9 @@ mod ends;
 mod nodes;
 mod rejoin;
 
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
+use crate::error::Result;
 use crate::options::Options;
 use crate::streamline::Streamline;
 use kurbo::Point;
@@ -111,17 +113,20 @@ pub(crate) struct TrailPoint {
 }
 
 /// Builds the stroke graph.
-pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
+///
+/// # Errors
+/// The token's.
+pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, cancel: &Cancel) -> Result<StrokeGraph> {
     let (dots, mut lines) = ends::split_dots(image, streamlines);
-    let mut resolved = Resolved::new(image, &lines);
+    let mut resolved = Resolved::new(image, &lines, cancel)?;
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
     if !cuts.is_empty() {
         lines = rejoin::cut_lines(&lines, &cuts);
-        resolved = Resolved::new(image, &lines);
+        resolved = Resolved::new(image, &lines, cancel)?;
     }
     let mut graph = assemble::assemble(image, &lines, &resolved.ends, &resolved.nodes, options);
     graph.dots = dots;
-    graph
+    Ok(graph)
 }
 
 /// Lines with their ends resolved.
@@ -131,10 +136,14 @@ struct Resolved {
 }
 
 impl Resolved {
-    fn new(image: &LineImage, lines: &[Streamline]) -> Self {
+    fn new(image: &LineImage, lines: &[Streamline], cancel: &Cancel) -> Result<Self> {
+        cancel.check()?;
         let ends = ends::ends(image, lines);
+        cancel.check()?;
         let contacts = contacts::contacts(image, lines, &ends);
+        cancel.check()?;
         let nodes = nodes::resolve(image, lines, &ends, &contacts);
-        Self { ends, nodes }
+        cancel.check()?;
+        Ok(Self { ends, nodes })
     }
 }

@@ -13,7 +13,9 @@ mod walk;
 
 pub(crate) use heading::{Tail, angle_between};
 
+use crate::cancel::Cancel;
 use crate::clean::LineImage;
+use crate::error::Result;
 use crate::field::FrameField;
 use coverage::Coverage;
 use kurbo::Point;
@@ -58,13 +60,17 @@ pub struct Streamline {
 pub(crate) const STEP: f64 = 0.5;
 
 /// Traces all ink along the field, most certain seeds first.
-pub fn trace(image: &LineImage, frames: &FrameField) -> Vec<Streamline> {
+///
+/// # Errors
+/// The token's.
+pub fn trace(image: &LineImage, frames: &FrameField, cancel: &Cancel) -> Result<Vec<Streamline>> {
     let mut coverage = Coverage::new(&image.mask, image.line_width);
     let mut streamlines = Vec::new();
     for seed in seeds::seeds(image, frames) {
         if coverage.is_painted(seed.point) {
             continue;
         }
+        cancel.check()?;
         let id = streamlines.len() as u32;
         let before = coverage.len();
         let mut walker = Walker::new(image, frames, &mut coverage, id);
@@ -79,5 +85,5 @@ pub fn trace(image: &LineImage, frames: &FrameField) -> Vec<Streamline> {
             streamlines.push(streamline);
         }
     }
-    streamlines
+    Ok(streamlines)
 }

@@ -2,9 +2,11 @@
 
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use fieldtrace::batch::Share;
 use fieldtrace::load::LoadOptions;
 use fieldtrace::options::{self, Invert, Options, StrokeWidth, Threshold};
 use std::path::PathBuf;
+use std::time::Duration;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -13,10 +15,12 @@ Examples:
   trace - -o - < scan.tif > out.svg       reads standard input, writes standard output
   trace plan.tif --preset plan --dpi 300  a plan, sized in millimetres
   trace sketch.png --debug-dir look       also writes a picture of each stage to look/
+  trace scans -r -o drawings              every drawing of a folder and the folders in it
+  trace '2024-*/*.tif' -o drawings        every drawing that matches
   trace field scan.png -o field.npz       the direction field alone
 
 A file whose name is that of a subcommand is given as ./field.
-Exit codes: 0 done, 1 the file could not be traced, 2 wrong usage.";
+Exit codes: 0 done, 1 a file could not be traced, 2 wrong usage, 130 interrupted.";
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().bold())
@@ -49,15 +53,19 @@ pub(crate) enum Command {
     /// Train the network that predicts the field.
     #[cfg(feature = "learned")]
     Train(TrainArgs),
+    /// Trace many drawings into a folder; the same as more than one IN
+    Batch(Box<TraceArgs>),
 }
 
 /// The arguments of a trace.
 #[derive(Debug, Args)]
 pub(crate) struct TraceArgs {
-    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG; `-` is standard input
-    #[arg(value_name = "IN", required = true)]
-    pub(crate) input: Option<PathBuf>,
-    /// The SVG to write; `-` is standard output [default: IN with .svg, or - for standard input]
+    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG; `-` is standard input. Several, a folder
+    /// or a pattern make a batch
+    #[arg(value_name = "IN", required_unless_present = "manifest")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The SVG to write, or the folder for a batch; `-` is standard output [default: IN with .svg, or - for
+    /// standard input]
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
@@ -76,6 +84,8 @@ pub(crate) struct TraceArgs {
     pub(crate) debug_dir: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) talk: TalkArgs,
+    #[command(flatten)]
+    pub(crate) batch: BatchArgs,
 }
 
 /// The arguments of `trace field`.
@@ -252,6 +262,41 @@ pub(crate) struct TalkArgs {
     pub(crate) verbose: bool,
 }
 
+/// How many drawings are traced in one go; any of these makes a batch.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Batch")]
+pub(crate) struct BatchArgs {
+    /// Also take the folders in a folder, and keep their tree
+    #[arg(short, long)]
+    pub(crate) recursive: bool,
+    /// Read more inputs from a file, one a line; `-` is standard input
+    #[arg(long, value_name = "FILE")]
+    pub(crate) manifest: Option<PathBuf>,
+    /// Take share I of N of the sorted inputs
+    #[arg(long, value_name = "I/N")]
+    pub(crate) shard: Option<Share>,
+    /// Trace again what has an output that is newer than the input
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Threads [default: one for each core]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) jobs: Option<u16>,
+    /// Give up on a file after this time
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
+    pub(crate) timeout: Option<Duration>,
+    /// Write a record for each file to standard output, as JSON lines in the order of the inputs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl BatchArgs {
+    /// Whether any was given.
+    pub(crate) fn any(&self) -> bool {
+        let flags = self.recursive || self.force || self.json;
+        flags || self.manifest.is_some() || self.shard.is_some() || self.jobs.is_some() || self.timeout.is_some()
+    }
+}
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Preset {
     /// Pencil and ink: looser curves, short strokes dropped
@@ -287,6 +332,12 @@ fn parse_number(text: &str) -> Result<f64, String> {
 fn parse_dpi(text: &str) -> Result<f64, String> {
     let dpi = parse_number(text)?;
     if (1.0..=100_000.0).contains(&dpi) { Ok(dpi) } else { Err("not between 1 and 100000".into()) }
+}
+
+fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds = parse_number(text)?;
+    let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero());
+    time.ok_or_else(|| "not a time in seconds".into())
 }
 
 fn parse_precision(text: &str) -> Result<usize, String> {
@@ -359,6 +410,6 @@ mod tests {
         let field = Cli::parse_from(["trace", "field", "in.png", "-o", "f.npz"]);
         assert!(matches!(field.command, Some(Command::Field(_))));
         let file = Cli::parse_from(["trace", "./field"]);
-        assert_eq!((file.command.is_none(), file.trace.input), (true, Some("./field".into())));
+        assert_eq!((file.command.is_none(), file.trace.inputs), (true, vec!["./field".into()]));
     }
 }

@@ -10,6 +10,8 @@ pub(crate) enum Failure {
     Usage(String),
     /// A file could not be read, traced or written: exit code 1.
     File(String),
+    /// A batch was interrupted: exit code 130, as shells have it.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -18,13 +20,16 @@ impl Failure {
         match self {
             Self::Usage(_) => 2,
             Self::File(_) => 1,
+            Self::Interrupted(_) => 130,
         }
     }
 
     /// What went wrong with an input, as `FILE: reason: cause`.
     pub(crate) fn of(input: &str, error: &Error) -> Self {
-        if let Error::Option { .. } = error {
-            return Self::Usage(format!("--{}", one_line(error)));
+        match error {
+            Error::Option { .. } => return Self::Usage(format!("--{}", one_line(error))),
+            Error::Plan { .. } => return Self::Usage(one_line(error)),
+            _ => {}
         }
         let names_its_file = matches!(
             error,
@@ -33,6 +38,7 @@ impl Failure {
                 | Error::TooLarge { .. }
                 | Error::NothingVisible { .. }
                 | Error::Weights { .. }
+                | Error::List { .. }
                 | Error::Write { .. }
         );
         let text = one_line(error);
@@ -42,13 +48,13 @@ impl Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Usage(text) | Self::File(text)) = self;
+        let (Self::Usage(text) | Self::File(text) | Self::Interrupted(text)) = self;
         f.write_str(text)
     }
 }
 
 /// An error and its causes in one line.
-fn one_line(error: &dyn std::error::Error) -> String {
+pub(crate) fn one_line(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();
     while let Some(cause) = source {

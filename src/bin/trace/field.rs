@@ -1,6 +1,6 @@
 //! `trace field IN -o OUT`: the field of directions alone.
 
-use crate::args::{self, FieldArgs};
+use crate::args::FieldArgs;
 use crate::failure::Failure;
 use crate::source;
 use crate::target;
@@ -9,7 +9,6 @@ use fieldtrace::Error;
 use fieldtrace::field::{PolyVectorField, write_npz};
 use fieldtrace::inspect::{field_overlay, to_png};
 use fieldtrace::load::{Scan, load};
-use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::write::write_file;
 use std::io::Cursor;
 use std::path::Path;
@@ -28,9 +27,7 @@ pub(crate) fn run(args: &FieldArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of(&name, &e);
     let format = format_of(&args.output)?;
     target::keep_input(&args.input, &args.output)?;
-    let vectorizer = source::estimator(&args.source)
-        .and_then(|source| Vectorizer::with(args::options(&args.clean, None), source))
-        .map_err(failed)?;
+    let vectorizer = source::vectorizer(&args.source, &args.clean, None).map_err(failed)?;
 
     let mut stages = Stages::start(args.talk.verbose);
     let scan = load(&args.input, &args.load.options()).map_err(failed)?.scan;

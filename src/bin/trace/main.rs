@@ -1,8 +1,10 @@
 //! `trace`: turns raster line drawings into editable strokes.
 
 mod args;
+mod batch;
 mod failure;
 mod field;
+mod report;
 mod source;
 mod target;
 #[cfg(feature = "learned")]
@@ -33,6 +35,8 @@ fn main() -> ExitCode {
 fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Some(Command::Field(args)) => field::run(&args),
+        Some(Command::Batch(args)) => batch::run(&args),
+        None if batch::is_meant(&cli.trace) => batch::run(&cli.trace),
         #[cfg(feature = "learned")]
         Some(Command::Train(args)) => train::run(&args),
         None => vectorize::run(&cli.trace),

@@ -1,11 +1,17 @@
 //! Where the field comes from.
 
-use crate::args::{Estimator, FieldSourceArgs};
+use crate::args::{self, CleanArgs, Estimator, FieldSourceArgs, FitArgs};
 use fieldtrace::Result;
 use fieldtrace::estimate::{FieldEstimator, StructureTensor};
+use fieldtrace::pipeline::Vectorizer;
+
+/// What traces under the options and with the estimator that were asked for.
+pub(crate) fn vectorizer(source: &FieldSourceArgs, clean: &CleanArgs, fit: Option<&FitArgs>) -> Result<Vectorizer> {
+    Vectorizer::with(args::options(clean, fit), estimator(source)?)
+}
 
 /// The estimator that was asked for.
-pub(crate) fn estimator(args: &FieldSourceArgs) -> Result<Box<dyn FieldEstimator>> {
+fn estimator(args: &FieldSourceArgs) -> Result<Box<dyn FieldEstimator>> {
     match args.estimator {
         Estimator::Tensor => Ok(Box::new(StructureTensor::default())),
         #[cfg(feature = "learned")]

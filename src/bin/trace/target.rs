@@ -25,6 +25,12 @@ pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
+/// Whether a path has the extension of a file of some kind.
+pub(crate) fn is_file_name(path: &Path) -> bool {
+    let extension = extension(path);
+    extension == "svg" || OTHER_FORMATS.contains(&&*extension)
+}
+
 /// The SVG that a trace writes: the one that was named, or the input's name with `.svg`.
 pub(crate) fn svg_path(input: &Path, named: Option<&Path>) -> Result<PathBuf, Failure> {
     let output = match named {

@@ -1,6 +1,6 @@
 //! `trace IN`: a drawing to SVG.
 
-use crate::args::{self, TraceArgs};
+use crate::args::TraceArgs;
 use crate::failure::Failure;
 use crate::source;
 use crate::target;
@@ -12,14 +12,15 @@ use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::write::{SvgOptions, to_svg, write_file};
 use std::path::Path;
 
+/// The warning about a drawing without strokes.
+pub(crate) const EMPTY: &str = "no ink was found, the drawing is empty";
+
 /// Reads, traces and writes one drawing.
 pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
-    let Some(input) = &args.input else { return Err(Failure::Usage("no input is given".into())) };
+    let [input] = args.inputs.as_slice() else { return Err(Failure::Usage("no input is given".into())) };
     let name = target::name(input);
     let failed = |e: fieldtrace::Error| Failure::of(&name, &e);
-    let vectorizer = source::estimator(&args.source)
-        .and_then(|source| Vectorizer::with(args::options(&args.clean, Some(&args.fit)), source))
-        .map_err(failed)?;
+    let vectorizer = source::vectorizer(&args.source, &args.clean, Some(&args.fit)).map_err(failed)?;
     let output = target::svg_path(input, args.output.as_deref())?;
 
     let mut stages = Stages::start(args.talk.verbose);
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     write_file(&output, svg.as_bytes()).map_err(failed)?;
     stages.done("write", || format!("{} bytes to {}", svg.len(), target::name(&output)));
     if drawing.strokes.is_empty() && drawing.fills.is_empty() && !args.talk.quiet {
-        eprintln!("trace: {name}: warning: no ink was found, the drawing is empty");
+        eprintln!("trace: {name}: warning: {EMPTY}");
     }
     Ok(())
 }
