@@ -1,14 +1,35 @@
 //! The result: strokes and filled shapes in pixel coordinates.
 
 use kurbo::{Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, Point, Shape, Vec2};
+use std::fmt;
+use std::str::FromStr;
 
 /// Colour of a stroke or fill, sRGB.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Color(pub [u8; 3]);
 
 impl Color {
     /// Black, the colour of ink where the input is grey.
     pub const BLACK: Self = Self([0, 0, 0]);
+}
+
+/// As `#rrggbb`.
+impl fmt::Display for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [r, g, b] = self.0;
+        write!(f, "#{r:02x}{g:02x}{b:02x}")
+    }
+}
+
+/// From `#rrggbb`.
+impl FromStr for Color {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()));
+        let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
+        let [_, r, g, b] = value.ok_or_else(|| format!("\"{text}\" is not a colour such as #12ab9f"))?.to_be_bytes();
+        Ok(Self([r, g, b]))
+    }
 }
 
 /// One piece of a stroke. Arcs are circular (`radii.x == radii.y`, no rotation).
@@ -171,6 +192,22 @@ pub struct Fill {
     pub outline: BezPath,
     /// Ink colour.
     pub color: Color,
+}
+
+impl Fill {
+    /// The corners of the outline's closed polygons, where it is made of straight pieces; of curves, their ends.
+    pub(crate) fn rings(&self) -> Vec<Vec<Point>> {
+        let mut rings: Vec<Vec<Point>> = Vec::new();
+        for el in self.outline.elements() {
+            match (*el, el.end_point()) {
+                (PathEl::MoveTo(p), _) => rings.push(vec![p]),
+                (PathEl::ClosePath, _) | (_, None) => {}
+                (_, Some(p)) => rings.last_mut().into_iter().for_each(|r| r.push(p)),
+            }
+        }
+        rings.retain(|r| r.len() > 2);
+        rings
+    }
 }
 
 /// A vector line drawing over a canvas of `width x height` pixels.

@@ -474,3 +474,26 @@ fn help_and_version_go_to_standard_output() {
     assert_eq!(version.trim(), concat!("trace ", env!("CARGO_PKG_VERSION")));
     desk.trace(&["field", "--help"]).done();
 }
+
+#[test]
+fn a_graph_is_written_and_traced_on() {
+    let desk = Desk::new();
+    desk.trace(&["drawing.png", "-o", "a.svg", "--graph", "a.json"]).done();
+    desk.trace(&["drawing.png", "-o", "b.json"]).done();
+    assert_eq!(desk.read("a.json"), desk.read("b.json"));
+    desk.trace(&["a.json", "-o", "c.svg"]).done();
+    let body = |name: &str| desk.read(name).split("</title>").nth(1).unwrap().to_string();
+    assert_eq!(body("a.svg"), body("c.svg"));
+    let piped = desk.trace_with_input(&["-", "-o", "-"], desk.read("a.json").as_bytes());
+    assert!(String::from_utf8(piped.done().stdout.clone()).unwrap().contains("</svg>"));
+    desk.trace(&["a.json", "-o", "d.svg", "--width", "9"]).done();
+    assert!(desk.read("d.svg").contains("stroke-width=\"9\""));
+    desk.trace(&["a.json", "-o", "a.json"]).wrong_usage("overwrite");
+    desk.trace(&["drawing.png", "-o", "e.svg", "--graph", "e.svg"]).wrong_usage("one file");
+    desk.trace(&["a.json", "-o", "e.svg", "--debug-dir", "look"]).wrong_usage("--debug-dir");
+    fs::write(desk.path("bad.json"), desk.read("a.json").replace("\"from\":0", "\"from\":999")).unwrap();
+    desk.trace(&["bad.json", "-o", "e.svg"]).failed(&["bad.json: edges[", "].from: there is no node 999"]);
+    fs::write(desk.path("cut.json"), &desk.read("a.json")[..300]).unwrap();
+    desk.trace(&["cut.json", "-o", "e.svg"]).failed(&["cut.json: line "]);
+    assert!(!desk.path("e.svg").exists() && !desk.path("look").exists());
+}

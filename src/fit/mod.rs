@@ -13,8 +13,8 @@ mod segmentation;
 mod solid;
 mod stroke;
 
-use crate::clean::{LineImage, unblurred_width};
-use crate::drawing::{Centreline, Color, Drawing, Stroke};
+use crate::clean::unblurred_width;
+use crate::drawing::{Centreline, Drawing, Stroke};
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
 use rayon::prelude::*;
@@ -36,31 +36,31 @@ impl Tolerance {
     }
 }
 
-/// Fits every trail of a graph. The drawing is in pixels of the line image.
-pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing {
-    let tolerance = Tolerance { fit: (options.detail * image.line_width).max(0.1), width: image.line_width };
-    let mut drawing = Drawing::new(image.ink.width() as f64, image.ink.height() as f64);
-    let fitted: Vec<Option<(Centreline, f64)>> = graph
+/// Fits every trail of a graph. The drawing is in pixels of the scan.
+pub fn fit(graph: &StrokeGraph, options: &Options) -> Drawing {
+    let page = &graph.page;
+    let tolerance = Tolerance { fit: (options.detail * page.line_width).max(0.1), width: page.line_width };
+    let fitted: Vec<Option<Stroke>> = graph
         .trails
         .par_iter()
         .map(|trail| {
             let walk = graph.walk(trail);
             let centreline = stroke::fit_trail(&walk, trail.closed, tolerance)?;
-            let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width);
-            Some((centreline, unblurred_width(measured, image.blur)))
+            let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(page.line_width);
+            Some(Stroke { centreline, width: unblurred_width(measured, page.blur), color: trail.color })
         })
         .collect();
-    let lines =
-        fitted.into_iter().flatten().map(|(centreline, width)| Stroke { centreline, width, color: Color::BLACK });
-    let dots = graph.dots.iter().map(|&(centre, diameter)| Stroke {
-        centreline: Centreline::Dot(centre),
-        width: diameter,
-        color: Color::BLACK,
+    let dots = graph.dots.iter().map(|dot| Stroke {
+        centreline: Centreline::Dot(dot.centre),
+        width: dot.diameter,
+        color: dot.color,
     });
-    drawing.strokes = lines.chain(dots).collect();
-    set_widths(&mut drawing, options.width, image.scale);
-    drawing.fills = image.solids.iter().map(|s| solid::smooth(s, tolerance)).collect();
-    drawing
+    let mut drawing = Drawing::default();
+    drawing.strokes = fitted.into_iter().flatten().chain(dots).collect();
+    set_widths(&mut drawing, options.width, page.scale);
+    drawing.fills = graph.fills.iter().map(|s| solid::smooth(s, tolerance)).collect();
+    let scaled = drawing.scaled(1.0 / page.scale);
+    Drawing { width: page.width, height: page.height, dpi: page.dpi, ..scaled }
 }
 
 /// Replaces measured widths where one width is asked for.

@@ -6,19 +6,25 @@
 //! into strokes.
 
 mod assemble;
+mod confidence;
 mod contacts;
 mod ends;
 mod nodes;
 mod rejoin;
 
 use crate::clean::LineImage;
+use crate::drawing::{Color, Fill};
 use crate::options::Options;
 use crate::streamline::Streamline;
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
+use serde::{Deserialize, Serialize};
+
+pub use confidence::DOUBTFUL;
 
 /// What meets at a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum JunctionKind {
     /// One line ends in the open.
     FreeEnd,
@@ -41,6 +47,16 @@ pub struct Junction {
     pub position: Point,
     /// What meets here.
     pub kind: JunctionKind,
+    /// How sure place and pairing are, from 0 to 1: how nearly the arms' extensions meet here, times how much worse
+    /// the next best way of pairing them would be. A free end is as sure as the paper around it is wide.
+    pub confidence: f64,
+}
+
+impl Junction {
+    /// A node that nothing speaks against.
+    pub fn new(position: Point, kind: JunctionKind) -> Self {
+        Self { position, kind, confidence: 1.0 }
+    }
 }
 
 /// An edge of the stroke graph: a piece of line between two nodes.
@@ -59,17 +75,67 @@ pub struct Trail {
     pub edges: Vec<(EdgeIndex, bool)>,
     /// Whether the walk ends where it started.
     pub closed: bool,
+    /// Ink colour.
+    pub color: Color,
 }
 
-/// The topology of a drawing.
+/// A blob of about a line width in both directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dot {
+    /// Its centre, in pixels of the line image.
+    pub centre: Point,
+    /// Its diameter, in pixels of the line image.
+    pub diameter: f64,
+    /// Ink colour.
+    pub color: Color,
+}
+
+/// The page that a graph was traced from, as far as fitting has to know it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Page {
+    /// Width of the scan in pixels.
+    pub width: f64,
+    /// Height of the scan in pixels.
+    pub height: f64,
+    /// Dots per inch of the scan, where known.
+    pub dpi: Option<f64>,
+    /// Pixels of the line image per pixel of the scan.
+    pub scale: f64,
+    /// Typical line width in pixels of the line image.
+    pub line_width: f64,
+    /// Standard deviation of the blur of the lines in pixels of the line image.
+    pub blur: f64,
+}
+
+impl Default for Page {
+    /// A page of no size with lines one pixel wide.
+    fn default() -> Self {
+        Self { width: 0.0, height: 0.0, dpi: None, scale: 1.0, line_width: 1.0, blur: 0.0 }
+    }
+}
+
+impl Page {
+    /// The page of a line image; its resolution is not known there.
+    fn of(image: &LineImage) -> Self {
+        let side = |pixels: usize| pixels as f64 / image.scale;
+        let (width, height) = (side(image.ink.width()), side(image.ink.height()));
+        Self { width, height, dpi: None, scale: image.scale, line_width: image.line_width, blur: image.blur }
+    }
+}
+
+/// The topology of a drawing, with all that fitting takes.
 #[derive(Clone, Debug, Default)]
 pub struct StrokeGraph {
+    /// The page.
+    pub page: Page,
     /// Nodes and edges.
     pub graph: StableUnGraph<Junction, Edge>,
     /// The strokes; every edge belongs to exactly one.
     pub trails: Vec<Trail>,
-    /// Blobs of about a line width in both directions: centre and diameter.
-    pub dots: Vec<(Point, f64)>,
+    /// Dots.
+    pub dots: Vec<Dot>,
+    /// Outlines of solid regions, straight from point to point, in pixels of the line image.
+    pub fills: Vec<Fill>,
 }
 
 impl StrokeGraph {
@@ -120,7 +186,10 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options) -
         resolved = Resolved::new(image, &lines);
     }
     let mut graph = assemble::assemble(image, &lines, &resolved.ends, &resolved.nodes, options);
+    graph.page = Page::of(image);
     graph.dots = dots;
+    graph.fills = image.solids.clone();
+    confidence::rate(&mut graph);
     graph
 }
 

@@ -113,12 +113,8 @@ fn median_width(drawing: &Drawing) -> f64 {
     widths.get(widths.len() / 2).copied().unwrap_or(1.0)
 }
 
-fn hex(Color([r, g, b]): Color) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
 fn group(number: usize, color: Color, layer: &Layer, spare_width: f64, rounding: Rounding) -> Group {
-    let color = hex(color);
+    let color = color.to_string();
     let mut group = Group::new()
         .set("id", format!("layer{number}"))
         .set("inkscape:groupmode", "layer")

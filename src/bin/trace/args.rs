@@ -13,6 +13,8 @@ Examples:
   trace - -o - < scan.tif > out.svg       reads standard input, writes standard output
   trace plan.tif --preset plan --dpi 300  a plan, sized in millimetres
   trace sketch.png --debug-dir look       also writes a picture of each stage to look/
+  trace scan.png -o graph.json            the stroke graph, to be looked at or corrected
+  trace graph.json -o out.svg             the strokes of a graph
   trace field scan.png -o field.npz       the direction field alone
 
 A file whose name is that of a subcommand is given as ./field.
@@ -51,10 +53,12 @@ pub(crate) enum Command {
 /// The arguments of a trace.
 #[derive(Debug, Args)]
 pub(crate) struct TraceArgs {
-    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG; `-` is standard input
+    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG, or a stroke graph in JSON; `-` is
+    /// standard input
     #[arg(value_name = "IN", required = true)]
     pub(crate) input: Option<PathBuf>,
-    /// The SVG to write; `-` is standard output [default: IN with .svg, or - for standard input]
+    /// The SVG to write, or the stroke graph where the name ends in .json; `-` is standard output
+    /// [default: IN with .svg, or - for standard input]
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
@@ -66,6 +70,9 @@ pub(crate) struct TraceArgs {
     /// Decimals of the coordinates and widths in the output
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = parse_precision, help_heading = "Output")]
     pub(crate) precision: usize,
+    /// Also write the stroke graph, as JSON that can be corrected and traced on
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) graph: Option<PathBuf>,
     /// Also write a picture of each stage, laid over the input, to this folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub(crate) debug_dir: Option<PathBuf>,

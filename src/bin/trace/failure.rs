@@ -32,6 +32,7 @@ impl Failure {
                 | Error::Decode { .. }
                 | Error::TooLarge { .. }
                 | Error::NothingVisible { .. }
+                | Error::Graph { .. }
                 | Error::Write { .. }
         );
         let text = one_line(error);
