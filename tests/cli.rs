@@ -111,7 +111,8 @@ impl Run {
 
 fn drawing() -> Drawing {
     let mut drawing = Drawing::new(120.0, 90.0);
-    let mut add = |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+    let mut add =
+        |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
     let line = |a, b| Centreline::Path { segments: vec![Segment::Line(Line::new(a, b))], closed: false };
     add(line((10.0, 10.0), (70.0, 60.0)), 3.0);
     add(line((70.0, 10.0), (10.0, 60.0)), 3.0);

@@ -17,7 +17,8 @@ use std::path::Path;
 /// One of everything on 160 x 120 pixels.
 fn drawing() -> Drawing {
     let mut drawing = Drawing::new(160.0, 120.0);
-    let mut add = |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+    let mut add =
+        |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
     let path = |segments| Centreline::Path { segments, closed: false };
     add(path(vec![Segment::Line(Line::new((10.0, 20.0), (150.0, 100.0)))]), 4.0);
     let arc = Arc::new((80.0, 60.0), (40.0, 40.0), 0.0, 3.0, 0.0);
@@ -73,7 +74,7 @@ fn graph() -> StrokeGraph {
         if let Some((before, from)) = last {
             let edge = Edge { points: vec![from, position], widths: vec![3.0, f64::NAN] };
             let edge = graph.graph.add_edge(before, node, edge);
-            graph.trails.push(Trail { edges: vec![(edge, false)], closed: false, color: Color::BLACK });
+            graph.trails.push(Trail { edges: vec![(edge, false)], closed: false, color: Color::BLACK, dashes: None });
         }
         last = Some((node, position));
     }

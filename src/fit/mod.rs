@@ -2,19 +2,21 @@
 //!
 //! A trail is split at its corners. Each section becomes the chain of lines, arcs and cubics that explains its
 //! points best at the least cost (`segmentation`); then joints are made sharp or smooth, lines that nearly keep
-//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`).
+//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`). Where outlines are
+//! asked for, the edges of each stroke are fitted in the same way (`outline`).
 
 mod arc;
 mod cubic;
 mod joints;
 mod line;
+mod outline;
 mod samples;
 mod segmentation;
 mod solid;
 mod stroke;
 
 use crate::clean::unblurred_width;
-use crate::drawing::{Centreline, Drawing, Stroke};
+use crate::drawing::{Centreline, Drawing, Fill, Stroke};
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
 use rayon::prelude::*;
@@ -36,29 +38,48 @@ impl Tolerance {
     }
 }
 
+/// What a trail becomes.
+enum Drawn {
+    Stroke(Stroke),
+    Outlines(Vec<Fill>),
+}
+
 /// Fits every trail of a graph. The drawing is in pixels of the scan.
 pub fn fit(graph: &StrokeGraph, options: &Options) -> Drawing {
     let page = &graph.page;
     let tolerance = Tolerance { fit: (options.detail * page.line_width).max(0.1), width: page.line_width };
-    let fitted: Vec<Option<Stroke>> = graph
+    let outlined = options.width == StrokeWidth::Outline;
+    let fitted: Vec<Drawn> = graph
         .trails
         .par_iter()
-        .map(|trail| {
+        .filter_map(|trail| {
             let walk = graph.walk(trail);
             let centreline = stroke::fit_trail(&walk, trail.closed, tolerance)?;
             let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(page.line_width);
-            Some(Stroke { centreline, width: unblurred_width(measured, page.blur), color: trail.color })
+            let width = unblurred_width(measured, page.blur);
+            let stroke = Stroke { centreline, width, color: trail.color, dashes: trail.dashes };
+            if !outlined || stroke.dashes.is_some() {
+                return Some(Drawn::Stroke(stroke));
+            }
+            let profile = outline::Profile::new(&walk, page.blur, width);
+            Some(Drawn::Outlines(outline::outline(&stroke, &profile, &graph.revisits(trail), tolerance)))
         })
         .collect();
-    let dots = graph.dots.iter().map(|dot| Stroke {
+    let mut drawing =
+        Drawing { fills: graph.fills.iter().map(|s| solid::smooth(s, tolerance)).collect(), ..Drawing::default() };
+    for drawn in fitted {
+        match drawn {
+            Drawn::Stroke(stroke) => drawing.strokes.push(stroke),
+            Drawn::Outlines(outlines) => drawing.fills.extend(outlines),
+        }
+    }
+    drawing.strokes.extend(graph.dots.iter().map(|dot| Stroke {
         centreline: Centreline::Dot(dot.centre),
         width: dot.diameter,
         color: dot.color,
-    });
-    let mut drawing = Drawing::default();
-    drawing.strokes = fitted.into_iter().flatten().chain(dots).collect();
+        dashes: None,
+    }));
     set_widths(&mut drawing, options.width, page.scale);
-    drawing.fills = graph.fills.iter().map(|s| solid::smooth(s, tolerance)).collect();
     let scaled = drawing.scaled(1.0 / page.scale);
     Drawing { width: page.width, height: page.height, dpi: page.dpi, ..scaled }
 }
@@ -66,7 +87,7 @@ pub fn fit(graph: &StrokeGraph, options: &Options) -> Drawing {
 /// Replaces measured widths where one width is asked for.
 fn set_widths(drawing: &mut Drawing, width: StrokeWidth, scale: f64) {
     let all = match width {
-        StrokeWidth::Measured => return,
+        StrokeWidth::Measured | StrokeWidth::Outline => return,
         StrokeWidth::Uniform => median_width(drawing.strokes.iter().map(|s| s.width)),
         StrokeWidth::Fixed(px) => Some(px * scale),
     };

@@ -213,7 +213,7 @@ impl<'a> Assembly<'a> {
                 continue;
             }
             let closed = self.lines[start / 2].closed;
-            let mut trail = Trail { edges: Vec::new(), closed, color: Color::BLACK };
+            let mut trail = Trail { edges: Vec::new(), closed, color: Color::BLACK, dashes: None };
             let mut entry = start;
             loop {
                 let (line, side) = (entry / 2, entry % 2);

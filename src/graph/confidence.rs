@@ -48,6 +48,7 @@ pub(super) fn rate(graph: &mut StrokeGraph) {
         .map(|node| {
             let confidence = match graph.graph[node].kind {
                 JunctionKind::Seam => 1.0,
+                JunctionKind::Gap => graph.graph[node].confidence,
                 JunctionKind::FreeEnd => end_confidence(graph, node, &points),
                 _ => junction_confidence(graph, node, links.get(&node).map_or(&[], Vec::as_slice)),
             };
@@ -59,10 +60,10 @@ pub(super) fn rate(graph: &mut StrokeGraph) {
     }
 }
 
-type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;
+pub(super) type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;
 
 /// Points of all edges, findable by place; empty where no line ends free.
-fn points_of_edges(graph: &StrokeGraph) -> PointsOfEdges {
+pub(super) fn points_of_edges(graph: &StrokeGraph) -> PointsOfEdges {
     if !graph.graph.node_weights().any(|n| n.kind == JunctionKind::FreeEnd) {
         return RTree::new();
     }
@@ -116,7 +117,7 @@ fn arms(graph: &StrokeGraph, node: NodeIndex) -> Vec<Arm> {
 }
 
 /// The course of an edge towards one of its ends.
-fn course(graph: &StrokeGraph, edge: EdgeIndex, at_source: bool) -> Option<Tail> {
+pub(super) fn course(graph: &StrokeGraph, edge: EdgeIndex, at_source: bool) -> Option<Tail> {
     let edge = &graph.graph[edge];
     let n = edge.points.len();
     let index = |k: usize| if at_source { k } else { n - 1 - k };
@@ -194,9 +195,14 @@ mod tests {
             let widths = vec![3.0; points.len()];
             arms.push(graph.graph.add_edge(centre, tip, Edge { points, widths }));
         }
-        graph.trails.push(Trail { edges: vec![(arms[0], true), (arms[1], false)], closed: false, color: Color::BLACK });
+        graph.trails.push(Trail {
+            edges: vec![(arms[0], true), (arms[1], false)],
+            closed: false,
+            color: Color::BLACK,
+            dashes: None,
+        });
         for &arm in &arms[2..] {
-            graph.trails.push(Trail { edges: vec![(arm, false)], closed: false, color: Color::BLACK });
+            graph.trails.push(Trail { edges: vec![(arm, false)], closed: false, color: Color::BLACK, dashes: None });
         }
         rate(&mut graph);
         graph

@@ -3,18 +3,21 @@
 //! A streamline runs straight through crossings and, at its ends, over the middle of whatever stopped it up to
 //! the far edge of the ink. Here each end is resolved: against the body of another line it is a tee, against
 //! other ends a corner or a branch, in the open a free end half a width short of the edge. Then arms are paired
-//! into strokes.
+//! into strokes, which end where their colour does (`pens`) and go on behind short breaks in their ink (`gaps`).
 
 mod assemble;
 mod confidence;
 mod contacts;
 mod ends;
+mod gaps;
 mod nodes;
+mod pens;
 mod rejoin;
+mod taper;
 
 use crate::clean::LineImage;
-use crate::drawing::{Color, Fill};
-use crate::options::Options;
+use crate::drawing::{Color, Dashes, Fill};
+use crate::options::{Options, StrokeWidth};
 use crate::streamline::Streamline;
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
@@ -38,6 +41,8 @@ pub enum JunctionKind {
     Branch,
     /// A closed line's arbitrary first point.
     Seam,
+    /// The ink ends, and the line goes on behind a gap.
+    Gap,
 }
 
 /// A node of the stroke graph.
@@ -77,6 +82,8 @@ pub struct Trail {
     pub closed: bool,
     /// Ink colour.
     pub color: Color,
+    /// The pattern of a dashed line, in pixels of the line image.
+    pub dashes: Option<Dashes>,
 }
 
 /// A blob of about a line width in both directions.
@@ -139,6 +146,33 @@ pub struct StrokeGraph {
 }
 
 impl StrokeGraph {
+    /// Shares of a trail's length halfway between two visits of one node: there the trail can be parted so that no
+    /// part crosses itself.
+    pub(crate) fn revisits(&self, trail: &Trail) -> Vec<f64> {
+        let mut visits: Vec<(petgraph::graph::NodeIndex, f64)> = Vec::new();
+        let mut walked = 0.0;
+        for &(edge, reversed) in &trail.edges {
+            let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
+                continue;
+            };
+            if visits.is_empty() {
+                visits.push((if reversed { b } else { a }, 0.0));
+            }
+            walked += e.points.windows(2).map(|p| (p[1] - p[0]).hypot()).sum::<f64>();
+            visits.push((if reversed { a } else { b }, walked));
+        }
+        let mut breaks = Vec::new();
+        for (j, &(node, at)) in visits.iter().enumerate() {
+            let before = visits[..j].iter().rposition(|v| v.0 == node);
+            // That a closed trail comes home is no crossing.
+            let home = |i: usize| trail.closed && i == 0 && j + 1 == visits.len();
+            if let Some(i) = before.filter(|&i| !home(i)) {
+                breaks.push(0.5 * (visits[i].1 + at) / walked.max(1e-9));
+            }
+        }
+        breaks
+    }
+
     /// Points and widths along a trail, and whether each point is a corner: a node at which two lines end.
     pub(crate) fn walk(&self, trail: &Trail) -> Vec<TrailPoint> {
         let mut walk: Vec<TrailPoint> = Vec::new();
@@ -178,7 +212,12 @@ pub(crate) struct TrailPoint {
 
 /// Builds the stroke graph.
 pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
-    let (dots, mut lines) = ends::split_dots(image, streamlines);
+    let (mut dots, mut lines) = ends::split_dots(image, streamlines);
+    let pens = pens::Pens::of(image, &lines, &dots);
+    if let Some(pens) = &pens {
+        lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
+        dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
+    }
     let mut resolved = Resolved::new(image, &lines);
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
     if !cuts.is_empty() {
@@ -189,6 +228,13 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options) -
     graph.page = Page::of(image);
     graph.dots = dots;
     graph.fills = image.solids.clone();
+    if let Some(pens) = &pens {
+        pens.paint(&mut graph);
+    }
+    if options.width == StrokeWidth::Outline {
+        taper::measure(image, &mut graph);
+    }
+    gaps::bridge(image, &mut graph, options);
     confidence::rate(&mut graph);
     graph
 }

@@ -70,13 +70,14 @@ pub fn graph_overlay(scan: &Scan, scale: f64, graph: &StrokeGraph) -> String {
 const DOUBT: &str = "#ff0090";
 
 /// Every kind of node with its colour and the words of the legend.
-const KINDS: [(JunctionKind, &str, &str); 6] = [
+const KINDS: [(JunctionKind, &str, &str); 7] = [
     (JunctionKind::FreeEnd, "#00a040", "free ends (disc)"),
     (JunctionKind::Corner, "#f08000", "corners (square)"),
     (JunctionKind::Tee, "#0060e0", "tees (triangle)"),
     (JunctionKind::Crossing, "#e00000", "crossings (x)"),
     (JunctionKind::Branch, "#9000c0", "branches (diamond)"),
     (JunctionKind::Seam, "#707070", "seams (ring)"),
+    (JunctionKind::Gap, "#00a0b0", "ends at gaps (small disc)"),
 ];
 
 /// Marks of one kind as one path.
@@ -106,6 +107,7 @@ fn mark(kind: JunctionKind, p: Point, r: f64) -> BezPath {
         }
         JunctionKind::Branch => corners(&[(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)]),
         JunctionKind::Seam => disc(p, 0.8 * r),
+        JunctionKind::Gap => disc(p, 0.45 * r),
     }
 }
 

@@ -46,7 +46,7 @@ struct Sheet {
 impl Sheet {
     fn add(&mut self, rng: &mut impl Rng, centreline: Centreline) {
         let width = self.style.pen(rng);
-        self.drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+        self.drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
     }
 
     /// A place on the canvas, or a little outside.

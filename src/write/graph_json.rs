@@ -1,6 +1,6 @@
 #![doc = include_str!("graph_json.md")]
 
-use crate::drawing::{Color, Fill};
+use crate::drawing::{Color, Dashes, Fill};
 use crate::error::{Error, Result};
 use crate::graph::{Dot, Edge, Junction, JunctionKind, Page, StrokeGraph, Trail};
 use kurbo::{BezPath, PathEl, Point, Vec2};
@@ -72,6 +72,16 @@ struct StrokeItem {
     closed: bool,
     #[serde(default)]
     color: Hex,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dashes: Option<DashItem>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct DashItem {
+    dash: f64,
+    gap: f64,
+    #[serde(default)]
+    offset: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -161,7 +171,12 @@ pub fn to_json(graph: &StrokeGraph) -> String {
     });
     let strokes = graph.trails.iter().map(|trail| {
         let edges = trail.edges.iter().map(|&(e, reversed)| Step { edge: edge_ids[&e], reversed }).collect();
-        line(&StrokeItem { edges, closed: trail.closed, color: Hex(trail.color) })
+        let dashes = trail.dashes.map(|Dashes { dash, gap, offset }| DashItem {
+            dash: to_scan(dash),
+            gap: to_scan(gap),
+            offset: to_scan(offset),
+        });
+        line(&StrokeItem { edges, closed: trail.closed, color: Hex(trail.color), dashes })
     });
     let dots = graph.dots.iter().map(|dot| {
         let [x, y] = pair(dot.centre);
@@ -362,7 +377,15 @@ impl Reader {
         if item.closed && first != last {
             return Err((place.into(), "it is said to be closed, and does not end where it starts".into()));
         }
-        Ok(Trail { edges, closed: item.closed, color: item.color.0 })
+        let mut dashes = None;
+        if let Some(DashItem { dash, gap, offset }) = item.dashes {
+            for (member, value) in [("dash", dash), ("gap", gap)] {
+                within(format!("{place}.dashes.{member}"), value, 0.01, FARTHEST)?;
+            }
+            within(format!("{place}.dashes.offset"), offset, 0.0, FARTHEST)?;
+            dashes = Some(Dashes { dash, gap, offset }.scaled(self.scale));
+        }
+        Ok(Trail { edges, closed: item.closed, color: item.color.0, dashes })
     }
 
     fn fill(&self, place: &str, item: &FillItem) -> std::result::Result<Fill, Wrong> {
