@@ -336,7 +336,7 @@ fn a_file_with_the_name_of_a_subcommand_is_reached_by_its_path() {
 #[test]
 fn wrong_usage_ends_with_two() {
     let desk = Desk::new();
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 21] = [
         (&[], "<IN>"),
         (&["--no-such-flag", "drawing.png"], "--no-such-flag"),
         (&["drawing.png", "blank.png"], "blank.png"),
@@ -349,7 +349,10 @@ fn wrong_usage_ends_with_two() {
         (&["drawing.png", "--threshold", "dark"], "neither auto nor a number"),
         (&["drawing.png", "--invert", "maybe"], "not one of auto, yes, no"),
         (&["drawing.png", "--width", "0"], "--width: 0 is not between"),
-        (&["drawing.png", "--width", "thick"], "neither measured, uniform nor a number"),
+        (&["drawing.png", "--width", "thick"], "neither measured, uniform, outline nor a number"),
+        (&["drawing.png", "--gap", "wide"], "neither auto nor a number"),
+        (&["drawing.png", "--gap", "-1"], "--gap: -1 is not between 0 and 100"),
+        (&["drawing.png", "--dashes", "maybe"], "not one of keep, join"),
         (&["drawing.png", "--precision", "9"], "between 0 and 8"),
         (&["drawing.png", "--dpi", "0"], "between 1 and 100000"),
         (&["drawing.png", "--size", "0"], "--size"),

@@ -49,7 +49,7 @@ fn whole(result: &Drawing, angle: f64, width: f64) -> Result<(), String> {
 #[test]
 fn a_pencil_line_goes_on_behind_a_short_break() {
     let cases = pairs(&pairs(&steps(0.0, 170.0, 17.0), &[3.0, 4.5]), &[0.6, 1.0]);
-    sweep("breaks in pencil", 0.95, &cases, |&((angle, width), paper)| {
+    sweep("breaks in pencil", 1.0, &cases, |&((angle, width), paper)| {
         let scan = on_paper(&page(broken(angle, width, paper)), Paper::PENCIL, angle as u64);
         whole(&traced(&scan, None, Dashing::Keep), angle, width)
     });
@@ -140,7 +140,7 @@ const PATTERNS: [(f64, f64); 4] = [(4.0, 4.0), (8.0, 4.0), (6.0, 3.0), (3.0, 5.0
 #[test]
 fn dashes_are_kept_or_joined() {
     let cases = pairs(&pairs(&steps(0.0, 165.0, 15.0), &[2.0, 3.0]), &PATTERNS);
-    sweep("dashed lines", 0.97, &cases, |&((angle, width), (dash, gap))| {
+    sweep("dashed lines", 1.0, &cases, |&((angle, width), (dash, gap))| {
         let truth = page(vec![dashed(angle, width, Dashes { dash: dash * width, gap: gap * width, offset: 0.0 })]);
         let scan = rendered(&truth);
         let count = (140.0 / ((dash + gap) * width)).ceil() as usize;
@@ -158,7 +158,7 @@ fn dashes_are_kept_or_joined() {
 #[test]
 fn dashes_on_paper_are_not_breaks() {
     let cases = pairs(&pairs(&steps(0.0, 160.0, 20.0), &[3.0, 4.0]), &[(6.0, 2.2), (5.0, 3.0)]);
-    sweep("dashes on paper", 0.95, &cases, |&((angle, width), (dash, gap))| {
+    sweep("dashes on paper", 1.0, &cases, |&((angle, width), (dash, gap))| {
         let truth = page(vec![dashed(angle, width, Dashes { dash: dash * width, gap: gap * width, offset: 0.0 })]);
         let paper = scan_of(Paper::INK.scan(&rendered(&truth).gray, angle as u64));
         let count = (140.0 / ((dash + gap) * width)).ceil() as usize;
@@ -171,7 +171,7 @@ fn dashes_on_paper_are_not_breaks() {
 
 #[test]
 fn a_dashed_circle_is_one_closed_stroke() {
-    sweep("dashed circles", 0.9, &pairs(&steps(0.0, 80.0, 20.0), &[10, 16]), |&(angle, count)| {
+    sweep("dashed circles", 1.0, &pairs(&steps(0.0, 80.0, 20.0), &[10, 16]), |&(angle, count)| {
         let (radius, width) = (50.0, 3.0);
         let turn = 2.0 * std::f64::consts::PI / f64::from(count);
         let dash = |k: i32| arc(CENTER, radius, angle.to_radians() + turn * f64::from(k), 0.55 * turn, width);

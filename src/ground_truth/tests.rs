@@ -7,7 +7,7 @@ use kurbo::{Arc, Circle, Line, Point, Vec2};
 use std::f64::consts::PI;
 
 fn stroke(segments: Vec<Segment>, width: f64) -> Stroke {
-    Stroke { centreline: Centreline::Path { segments, closed: false }, width, color: Color::BLACK }
+    Stroke { centreline: Centreline::Path { segments, closed: false }, width, color: Color::BLACK, dashes: None }
 }
 
 fn line(x0: f64, y0: f64, x1: f64, y1: f64, width: f64) -> Stroke {
