@@ -190,10 +190,10 @@ mod tests {
             assert_eq!(page.groups, 4);
             let group = |bar: usize, x: usize| page.group[(40 * bar + x, 30)];
             assert_eq!((group(0, 18), group(5, 18), group(2, 18)), (0, 0, group(4, 18)));
-            for bar in 0..6 {
+            for (bar, ink) in inks.into_iter().enumerate() {
                 assert!([15, 16, 18, 22].iter().all(|&x| group(bar, x) == group(bar, 18)), "bar {bar}");
                 let strength = page.strength[(40 * bar + 18, 30)];
-                let ink = 1.0 - inks[bar].into_iter().fold(1.0, f32::min);
+                let ink = 1.0 - ink.into_iter().fold(1.0, f32::min);
                 assert!((strength - ink).abs() < 0.02, "bar {bar}: {strength}");
             }
         }
