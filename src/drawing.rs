@@ -1,14 +1,52 @@
 //! The result: strokes and filled shapes in pixel coordinates.
 
 use kurbo::{Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, Point, Shape, Vec2};
+use std::fmt;
+use std::str::FromStr;
 
 /// Colour of a stroke or fill, sRGB.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Color(pub [u8; 3]);
 
 impl Color {
     /// Black, the colour of ink where the input is grey.
     pub const BLACK: Self = Self([0, 0, 0]);
+
+    /// Lightness from 0 to 1 and the two opponents of Oklab (Ottosson, *A perceptual color space for image
+    /// processing*, 2020).
+    pub(crate) fn oklab(self) -> [f64; 3] {
+        let [r, g, b] = self.0.map(|v| {
+            let v = f64::from(v) / 255.0;
+            if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+        });
+        let l = (0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b).cbrt();
+        let m = (0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b).cbrt();
+        let s = (0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b).cbrt();
+        [
+            0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+            1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+            0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s,
+        ]
+    }
+}
+
+/// As `#rrggbb`.
+impl fmt::Display for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [r, g, b] = self.0;
+        write!(f, "#{r:02x}{g:02x}{b:02x}")
+    }
+}
+
+/// From `#rrggbb`.
+impl FromStr for Color {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()));
+        let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
+        let [_, r, g, b] = value.ok_or_else(|| format!("\"{text}\" is not a colour such as #12ab9f"))?.to_be_bytes();
+        Ok(Self([r, g, b]))
+    }
 }
 
 /// One piece of a stroke. Arcs are circular (`radii.x == radii.y`, no rotation).
@@ -153,6 +191,29 @@ impl Centreline {
     }
 }
 
+/// The pattern of a dashed line, in pixels along the pen's path; round caps reach half a width beyond each dash.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dashes {
+    /// Length of a dash.
+    pub dash: f64,
+    /// From the end of a dash to the start of the next.
+    pub gap: f64,
+    /// How far into the pattern the line starts.
+    pub offset: f64,
+}
+
+impl Dashes {
+    /// The same pattern, `scale` times as long.
+    pub fn scaled(self, scale: f64) -> Self {
+        Self { dash: self.dash * scale, gap: self.gap * scale, offset: self.offset * scale }
+    }
+
+    /// The pattern of a line of some length seen from its end.
+    pub fn reversed(self, length: f64) -> Self {
+        Self { offset: (self.dash - self.offset - length).rem_euclid(self.dash + self.gap), ..self }
+    }
+}
+
 /// A line of the drawing with its pen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
@@ -162,6 +223,8 @@ pub struct Stroke {
     pub width: f64,
     /// Ink colour.
     pub color: Color,
+    /// The pattern of a dashed line.
+    pub dashes: Option<Dashes>,
 }
 
 /// A solid region, too wide to be a line; even-odd outline.
@@ -171,6 +234,22 @@ pub struct Fill {
     pub outline: BezPath,
     /// Ink colour.
     pub color: Color,
+}
+
+impl Fill {
+    /// The corners of the outline's closed polygons, where it is made of straight pieces; of curves, their ends.
+    pub(crate) fn rings(&self) -> Vec<Vec<Point>> {
+        let mut rings: Vec<Vec<Point>> = Vec::new();
+        for el in self.outline.elements() {
+            match (*el, el.end_point()) {
+                (PathEl::MoveTo(p), _) => rings.push(vec![p]),
+                (PathEl::ClosePath, _) | (_, None) => {}
+                (_, Some(p)) => rings.last_mut().into_iter().for_each(|r| r.push(p)),
+            }
+        }
+        rings.retain(|r| r.len() > 2);
+        rings
+    }
 }
 
 /// A vector line drawing over a canvas of `width x height` pixels.
@@ -214,6 +293,7 @@ impl Drawing {
             centreline: s.centreline.transformed(scale, Vec2::ZERO),
             width: s.width * scale,
             color: s.color,
+            dashes: s.dashes.map(|d| d.scaled(scale)),
         };
         let fill = |f: &Fill| Fill { outline: Affine::scale(scale) * f.outline.clone(), color: f.color };
         Self {
@@ -245,7 +325,7 @@ mod tests {
     fn scaling_scales_lengths_and_widths() {
         let mut d = Drawing::new(20.0, 10.0);
         let centreline = Centreline::Circle(Circle::new((5.0, 5.0), 3.0));
-        d.strokes.push(Stroke { centreline, width: 1.5, color: Color::BLACK });
+        d.strokes.push(Stroke { centreline, width: 1.5, color: Color::BLACK, dashes: None });
         let big = d.scaled(2.0);
         assert!((big.length() - 2.0 * d.length()).abs() < 1e-2);
         assert_eq!((big.width, big.height, big.strokes[0].width), (40.0, 20.0, 3.0));

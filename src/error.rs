@@ -44,6 +44,16 @@ pub enum Error {
         /// The path as given, or `-`.
         input: String,
     },
+    /// A stroke graph in JSON cannot be drawn.
+    #[error("{input}: {place}: {reason}")]
+    Graph {
+        /// The path as given, or `-`.
+        input: String,
+        /// Where in the file: a line and column, or the item by its list and number.
+        place: String,
+        /// What is wrong there, in one line.
+        reason: String,
+    },
     /// A field does not fit the image that it is meant for.
     #[error("the field is {} x {} and the image {} x {} pixels", field.0, field.1, image.0, image.1)]
     FieldSize {

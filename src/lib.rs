@@ -26,15 +26,15 @@
 //! | stage | result | what holds |
 //! |---|---|---|
 //! | [`load`] | [`load::Scan`] | upright, alpha over white, at least one pixel and at most the limit, resolution kept |
-//! | [`clean`] | [`clean::LineImage`] | dark on light, evenly lit, no specks; anti-aliased edges kept; the line width is known and no region much wider than it is left in the mask |
+//! | [`clean`] | [`clean::LineImage`] | dark on light, evenly lit, no specks; anti-aliased edges kept; the line width is known and no region much wider than it is left in the mask; on a page in colour, every ink is measured against its own strength |
 //! | [`estimate`] | [`field::PolyVectorField`] | defined on the mask; values that are not finite count as undefined |
 //! | decode | [`field::FrameField`] | unit directions; which root is `u` means nothing from one pixel to the next |
 //! | [`streamline`] | [`streamline::Streamline`]s | points half a pixel apart in the middle of the ink; no ink is covered twice in one direction |
-//! | [`graph`] | [`graph::StrokeGraph`] | every end is free, a corner, a tee or a branch, and every edge belongs to one stroke |
+//! | [`graph`] | [`graph::StrokeGraph`] | every end is free, at a gap, a corner, a tee or a branch, and every edge belongs to one stroke of one colour; it holds all that fitting takes, and can be written and read as JSON |
 //! | [`fit`] | [`drawing::Drawing`] | pieces join exactly, smoothly except at corners; lines, arcs and circles where they serve |
 //! | [`mod@write`] | SVG text | rounded, ordered for a short way between strokes, without a date |
 //!
-//! Positions of the stages from `clean` to `fit` are in pixels of the [`clean::LineImage`], which may be of another
+//! Positions of the stages from `clean` to `graph` are in pixels of the [`clean::LineImage`], which may be of another
 //! size than the scan; the drawing that comes out of [`pipeline::Vectorizer`] is in pixels of the scan. Pixels have x
 //! to the right and y down, and the centre of the first is (0.5, 0.5).
 //!

@@ -34,6 +34,18 @@ pub enum StrokeWidth {
     Uniform,
     /// This many pixels of the input for all.
     Fixed(f64),
+    /// Strokes are filled outlines, as wide at each place as the ink is.
+    Outline,
+}
+
+/// What becomes of dashed lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Dashing {
+    /// Every dash is a stroke.
+    #[default]
+    Keep,
+    /// Dashes at even distances along one line are one dashed stroke.
+    Join,
 }
 
 /// What a trace may be told. The defaults are meant to do well on any drawing.
@@ -52,6 +64,11 @@ pub struct Options {
     pub invert: Invert,
     /// The width written for each stroke.
     pub width: StrokeWidth,
+    /// Breaks in a line of at most this many line widths of paper are bridged, where direction and distance agree.
+    /// `None` bridges what a pencil leaves on a scan, and nothing on a clean render. In `[0, 100]`.
+    pub gap: Option<f64>,
+    /// What becomes of dashed lines.
+    pub dashes: Dashing,
 }
 
 impl Default for Options {
@@ -63,6 +80,8 @@ impl Default for Options {
             threshold: Threshold::Auto,
             invert: Invert::Auto,
             width: StrokeWidth::Measured,
+            gap: None,
+            dashes: Dashing::Keep,
         }
     }
 }
@@ -101,6 +120,9 @@ impl Options {
         };
         within("detail", self.detail, 0.01, 2.0)?;
         within("min-length", self.min_length, 0.0, 1000.0)?;
+        if let Some(gap) = self.gap {
+            within("gap", gap, 0.0, 100.0)?;
+        }
         if let Threshold::Fixed(t) = self.threshold {
             within("threshold", t, 0.001, 0.999)?;
         }

@@ -6,6 +6,7 @@ use crate::drawing::Drawing;
 use crate::error::{Error, Result};
 use crate::estimate::FieldEstimator;
 use crate::field::{FrameField, PolyVectorField};
+use crate::graph::StrokeGraph;
 use crate::hooks::Observer;
 use crate::load::Scan;
 use crate::options::Options;
@@ -59,11 +60,30 @@ impl Vectorizer {
     /// # Errors
     /// Whatever the estimator or the observer says.
     pub fn trace_observed(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<Drawing> {
+        let graph = self.graph(scan, observer)?;
+        self.draw(&graph, observer)
+    }
+
+    /// The stroke graph of a scan: the trace up to the fit, as the observer left it.
+    ///
+    /// # Errors
+    /// Whatever the estimator or the observer says.
+    pub fn graph(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<StrokeGraph> {
         let cancel = observer.cancel();
         let mut image = clean::clean_until(scan, &self.options, &cancel)?;
         observer.on_line_image(&mut image)?;
         let field = self.estimate(&image, &cancel)?;
         self.follow(scan, &image, field, observer)
+    }
+
+    /// The drawing of a stroke graph, be it traced, read or corrected.
+    ///
+    /// # Errors
+    /// Whatever the observer says of the drawing; it sees no other stage.
+    pub fn draw(&self, graph: &StrokeGraph, observer: &mut dyn Observer) -> Result<Drawing> {
+        let mut drawing = fit::fit(graph, &self.options, &observer.cancel())?;
+        observer.on_drawing(&mut drawing)?;
+        Ok(drawing)
     }
 
     /// Traces a scan under the caller's own field, given at the scan's size.
@@ -82,7 +102,8 @@ impl Vectorizer {
         let mut image = clean::clean_until(scan, &self.options, &observer.cancel())?;
         observer.on_line_image(&mut image)?;
         let (width, height) = image.ink.size();
-        self.follow(scan, &image, field.resized(width, height), observer)
+        let graph = self.follow(scan, &image, field.resized(width, height), observer)?;
+        self.draw(&graph, observer)
     }
 
     /// The field of a scan, at the scan's own size.
@@ -109,7 +130,7 @@ impl Vectorizer {
         image: &LineImage,
         mut field: PolyVectorField,
         observer: &mut dyn Observer,
-    ) -> Result<Drawing> {
+    ) -> Result<StrokeGraph> {
         observer.on_field(image, &mut field)?;
         let cancel = observer.cancel();
         let frames = FrameField::new(field);
@@ -120,12 +141,10 @@ impl Vectorizer {
             }
         }
         let mut graph = graph::build(image, &streamlines, &self.options, &cancel)?;
+        (graph.page.width, graph.page.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
+        graph.page.dpi = scan.dpi;
         observer.on_graph(image, &mut graph)?;
-        let mut drawing = fit::fit(image, &graph, &self.options, &cancel)?.scaled(1.0 / image.scale);
-        (drawing.width, drawing.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
-        drawing.dpi = scan.dpi;
-        observer.on_drawing(&mut drawing)?;
-        Ok(drawing)
+        Ok(graph)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::drawing::{Centreline, Drawing, Stroke};
 use crate::raster::Raster;
 use kurbo::{BezPath, PathEl};
-use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Transform};
+use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, StrokeDash, Transform};
 
 /// How much of each pixel a drawing inks, 0 to 1, anti-aliased: strokes with round caps and joins over
 /// solid regions. Colours are not looked at. The raster has the canvas' size, rounded up.
@@ -34,7 +34,14 @@ fn draw_stroke(pixmap: &mut Pixmap, paint: &Paint, stroke: &Stroke) {
         }
         return;
     }
-    let pen = tiny_skia::Stroke { width, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Default::default() };
+    let dash = stroke.dashes.and_then(|d| StrokeDash::new(vec![d.dash as f32, d.gap as f32], d.offset as f32));
+    let pen = tiny_skia::Stroke {
+        width,
+        line_cap: LineCap::Round,
+        line_join: LineJoin::Round,
+        dash,
+        ..tiny_skia::Stroke::default()
+    };
     if let Some(path) = skia_path(&stroke.centreline.to_path()) {
         pixmap.stroke_path(&path, paint, &pen, Transform::identity(), None);
     }
@@ -64,7 +71,7 @@ mod tests {
 
     fn drawing(centreline: Centreline, width: f64) -> Drawing {
         let mut drawing = Drawing::new(40.0, 30.0);
-        drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+        drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
         drawing
     }
 

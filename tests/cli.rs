@@ -111,7 +111,8 @@ impl Run {
 
 fn drawing() -> Drawing {
     let mut drawing = Drawing::new(120.0, 90.0);
-    let mut add = |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+    let mut add =
+        |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
     let line = |a, b| Centreline::Path { segments: vec![Segment::Line(Line::new(a, b))], closed: false };
     add(line((10.0, 10.0), (70.0, 60.0)), 3.0);
     add(line((70.0, 10.0), (10.0, 60.0)), 3.0);
@@ -335,7 +336,7 @@ fn a_file_with_the_name_of_a_subcommand_is_reached_by_its_path() {
 #[test]
 fn wrong_usage_ends_with_two() {
     let desk = Desk::new();
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 21] = [
         (&[], "<IN>"),
         (&["--no-such-flag", "drawing.png"], "--no-such-flag"),
         (&["drawing.png", "blank.png"], "-o DIR"),
@@ -348,7 +349,10 @@ fn wrong_usage_ends_with_two() {
         (&["drawing.png", "--threshold", "dark"], "neither auto nor a number"),
         (&["drawing.png", "--invert", "maybe"], "not one of auto, yes, no"),
         (&["drawing.png", "--width", "0"], "--width: 0 is not between"),
-        (&["drawing.png", "--width", "thick"], "neither measured, uniform nor a number"),
+        (&["drawing.png", "--width", "thick"], "neither measured, uniform, outline nor a number"),
+        (&["drawing.png", "--gap", "wide"], "neither auto nor a number"),
+        (&["drawing.png", "--gap", "-1"], "--gap: -1 is not between 0 and 100"),
+        (&["drawing.png", "--dashes", "maybe"], "not one of keep, join"),
         (&["drawing.png", "--precision", "9"], "between 0 and 8"),
         (&["drawing.png", "--dpi", "0"], "between 1 and 100000"),
         (&["drawing.png", "--size", "0"], "--size"),
@@ -480,4 +484,27 @@ fn help_and_version_go_to_standard_output() {
     let version = String::from_utf8(desk.trace(&["--version"]).done().stdout.clone()).unwrap();
     assert_eq!(version.trim(), concat!("trace ", env!("CARGO_PKG_VERSION")));
     desk.trace(&["field", "--help"]).done();
+}
+
+#[test]
+fn a_graph_is_written_and_traced_on() {
+    let desk = Desk::new();
+    desk.trace(&["drawing.png", "-o", "a.svg", "--graph", "a.json"]).done();
+    desk.trace(&["drawing.png", "-o", "b.json"]).done();
+    assert_eq!(desk.read("a.json"), desk.read("b.json"));
+    desk.trace(&["a.json", "-o", "c.svg"]).done();
+    let body = |name: &str| desk.read(name).split("</title>").nth(1).unwrap().to_string();
+    assert_eq!(body("a.svg"), body("c.svg"));
+    let piped = desk.trace_with_input(&["-", "-o", "-"], desk.read("a.json").as_bytes());
+    assert!(String::from_utf8(piped.done().stdout.clone()).unwrap().contains("</svg>"));
+    desk.trace(&["a.json", "-o", "d.svg", "--width", "9"]).done();
+    assert!(desk.read("d.svg").contains("stroke-width=\"9\""));
+    desk.trace(&["a.json", "-o", "a.json"]).wrong_usage("overwrite");
+    desk.trace(&["drawing.png", "-o", "e.svg", "--graph", "e.svg"]).wrong_usage("one file");
+    desk.trace(&["a.json", "-o", "e.svg", "--debug-dir", "look"]).wrong_usage("--debug-dir");
+    fs::write(desk.path("bad.json"), desk.read("a.json").replace("\"from\":0", "\"from\":999")).unwrap();
+    desk.trace(&["bad.json", "-o", "e.svg"]).failed(&["bad.json: edges[", "].from: there is no node 999"]);
+    fs::write(desk.path("cut.json"), &desk.read("a.json")[..300]).unwrap();
+    desk.trace(&["cut.json", "-o", "e.svg"]).failed(&["cut.json: line "]);
+    assert!(!desk.path("e.svg").exists() && !desk.path("look").exists());
 }

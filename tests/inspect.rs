@@ -3,7 +3,7 @@
 use fieldtrace::clean::{LineImage, clean};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
 use fieldtrace::field::PolyVectorField;
-use fieldtrace::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
+use fieldtrace::graph::{Dot, Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use fieldtrace::hooks::Observer;
 use fieldtrace::inspect::{DebugDir, drawing_overlay, field_overlay, graph_overlay, streamlines_overlay, to_png};
 use fieldtrace::load::Scan;
@@ -17,7 +17,8 @@ use std::path::Path;
 /// One of everything on 160 x 120 pixels.
 fn drawing() -> Drawing {
     let mut drawing = Drawing::new(160.0, 120.0);
-    let mut add = |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK });
+    let mut add =
+        |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
     let path = |segments| Centreline::Path { segments, closed: false };
     add(path(vec![Segment::Line(Line::new((10.0, 20.0), (150.0, 100.0)))]), 4.0);
     let arc = Arc::new((80.0, 60.0), (40.0, 40.0), 0.0, 3.0, 0.0);
@@ -69,15 +70,15 @@ fn graph() -> StrokeGraph {
     let mut last = None;
     for (i, kind) in [FreeEnd, Corner, Tee, Crossing, Branch, Seam].into_iter().enumerate() {
         let position = Point::new(20.0 + 24.0 * i as f64, 40.0 + 10.0 * (i % 2) as f64);
-        let node = graph.graph.add_node(Junction { position, kind });
+        let node = graph.graph.add_node(Junction::new(position, kind));
         if let Some((before, from)) = last {
             let edge = Edge { points: vec![from, position], widths: vec![3.0, f64::NAN] };
             let edge = graph.graph.add_edge(before, node, edge);
-            graph.trails.push(Trail { edges: vec![(edge, false)], closed: false });
+            graph.trails.push(Trail { edges: vec![(edge, false)], closed: false, color: Color::BLACK, dashes: None });
         }
         last = Some((node, position));
     }
-    graph.dots.push((Point::new(140.0, 60.0), 6.0));
+    graph.dots.push(Dot { centre: Point::new(140.0, 60.0), diameter: 6.0, color: Color::BLACK });
     graph
 }
 

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use usvg::tiny_skia_path::PathSegment;
 
 fn stroke(centreline: Centreline, width: f64) -> Stroke {
-    Stroke { centreline, width, color: Color::BLACK }
+    Stroke { centreline, width, color: Color::BLACK, dashes: None }
 }
 
 fn chain(segments: Vec<Segment>, closed: bool) -> Centreline {

@@ -1,6 +1,7 @@
 //! From a scan to the ink that is to be traced: evenly lit, thresholded, despeckled, at a known line width.
 
 mod blur;
+mod colors;
 mod paper;
 mod resample;
 mod solids;
@@ -9,13 +10,14 @@ mod threshold;
 mod width;
 
 pub(crate) use blur::unblurred_width;
+pub(crate) use threshold::LEAST_GRAIN;
 pub(crate) use width::is_ridge;
 
 use crate::cancel::Cancel;
 use crate::drawing::Fill;
 use crate::error::Result;
 use crate::load::Scan;
-use crate::options::{Invert, Options};
+use crate::options::{Invert, Options, Threshold};
 use crate::raster::{Mask, Raster};
 use image::{ImageBuffer, Luma};
 use imageproc::distance_transform::euclidean_squared_distance_transform;
@@ -42,6 +44,9 @@ pub struct LineImage {
     pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
+    /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
+    /// ink is grey.
+    pub colors: Option<Raster<[u8; 3]>>,
 }
 
 /// A page whose lightest and darkest pixels are nearer than this is blank.
@@ -82,20 +87,28 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
 /// # Errors
 /// The token's.
 pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
+    let inverted = match options.invert {
+        Invert::Yes => true,
+        Invert::No => false,
+        Invert::Auto => is_light_on_dark(&scan.gray),
+    };
     cancel.check()?;
-    let light = if has_contrast(&scan.gray) { upright(&scan.gray, options.invert) } else { scan.gray.map(|_| 1.0) };
-    let paper = paper::paper_level(&light);
+    let page = scan.rgb.as_ref().and_then(|rgb| colors::separate(rgb, inverted));
     cancel.check()?;
-    let mut ink = paper::divide(&light, &paper);
-    cancel.check()?;
-    let noise = threshold::grain(&ink);
-    if noise > 0.0 {
-        // Just enough to join the grain of a pencil line: the half-width of a pixel's own footprint.
-        ink = smooth(ink, 0.7);
-    }
-    cancel.check()?;
-    let (mut ink, mut mask) = threshold::binarise(ink, noise, options.threshold);
-    cancel.check()?;
+    let noise;
+    let (mut ink, mut mask) = match &page {
+        Some(page) => {
+            noise = threshold::grain(&page.strength);
+            inks_of_groups(page, noise, options.threshold)
+        }
+        None => {
+            let ink = ink_of_gray(&scan.gray, inverted);
+            cancel.check()?;
+            noise = threshold::grain(&ink);
+            cancel.check()?;
+            threshold::binarise(joined(ink, noise), noise, options.threshold, false)
+        }
+    };
     let mut depth = depth(&mask);
     cancel.check()?;
     let mut line_width = width::line_width(&ink, &mask, &depth);
@@ -116,23 +129,59 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
     let ink = ink.map(|i| i.min(DARKEST));
-    Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids })
+    let colors = page.map(|page| page.colors);
+    Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, colors })
+}
+
+/// Ink by the light that the paper's level has lost.
+fn ink_of_gray(gray: &Raster<f32>, inverted: bool) -> Raster<f32> {
+    let light = match inverted {
+        _ if !has_contrast(gray) => gray.map(|_| 1.0),
+        true => gray.map(|g| 1.0 - g),
+        false => gray.clone(),
+    };
+    paper::divide(&light, &paper::paper_level(&light))
+}
+
+/// Just enough smoothing to join the grain of a pencil line: the half-width of a pixel's own footprint.
+fn joined(ink: Raster<f32>, noise: f64) -> Raster<f32> {
+    if noise > 0.0 { smooth(ink, 0.7) } else { ink }
+}
+
+/// Each group of inks scaled and told from paper by itself, and all laid over one another.
+fn inks_of_groups(page: &colors::ColorPage, noise: f64, threshold: Threshold) -> (Raster<f32>, Mask) {
+    let (width, height) = page.strength.size();
+    let (mut ink, mut mask) = (Raster::filled(width, height, 0.0), Raster::filled(width, height, false));
+    for group in 0..page.groups {
+        let own = Raster::from_fn(
+            width,
+            height,
+            |x, y| {
+                if page.group[(x, y)] == group { page.strength[(x, y)] } else { 0.0 }
+            },
+        );
+        if group == 0 && !page.has_grey {
+            // Grain, and where two colours mix.
+            ink = own;
+            continue;
+        }
+        let (own, own_mask) = threshold::binarise(joined(own, noise), noise, threshold, true);
+        // What smoothing took from one ink where it meets another, it put into the other.
+        ink.data_mut().iter_mut().zip(own.data()).for_each(|(i, &o)| *i += o);
+        mask.data_mut().iter_mut().zip(own_mask.data()).for_each(|(m, &o)| *m |= o);
+    }
+    let seams = page.seams(&ink);
+    for ((x, y), full) in seams {
+        ink[(x, y)] = full;
+    }
+    mask.data_mut().iter_mut().zip(ink.data()).for_each(|(m, &i)| *m |= i > 0.5);
+    (ink, mask)
 }
 
 /// Whether there is anything on the page: a scan of one tone has no ink, whatever the tone.
 fn has_contrast(gray: &Raster<f32>) -> bool {
     let (low, high) = gray.data().iter().fold((f32::MAX, f32::MIN), |(a, b), &g| (a.min(g), b.max(g)));
     high - low > LEAST_CONTRAST
-}
-
-/// Lightness with dark lines on light paper.
-fn upright(gray: &Raster<f32>, invert: Invert) -> Raster<f32> {
-    let invert = match invert {
-        Invert::Yes => true,
-        Invert::No => false,
-        Invert::Auto => is_light_on_dark(gray),
-    };
-    if invert { gray.map(|g| 1.0 - g) } else { gray.clone() }
 }
 
 /// Lines cover little, so the more common side of the middle of the tonal range is the paper.

@@ -13,7 +13,7 @@ const PAPER: f32 = 0.1;
 /// A pixel of flat paper deviates by less than this: the rounding of 8-bit values.
 const FLAT: f32 = 0.008;
 /// The grain that a scan has at least; less cannot be told from rounding.
-const LEAST_GRAIN: f64 = 0.01;
+pub(crate) const LEAST_GRAIN: f64 = 0.01;
 
 /// Spread of the paper's grain, as a share of full ink; 0 for a clean render, whose paper is flat.
 pub(super) fn grain(ink: &Raster<f32>) -> f64 {
@@ -49,18 +49,19 @@ pub(super) fn level(noise: f64) -> f32 {
 /// Scales the ink so that a line's typical core is 1, the darkest more, and tells ink from paper.
 ///
 /// One level serves the whole page when its lines are about equally dark; otherwise each place is measured
-/// against the darkest ink near it, so that light pencil lines hold beside dark ones.
-pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold) -> (Raster<f32>, Mask) {
+/// against the darkest ink near it, so that light pencil lines hold beside dark ones. On a clean render what is far
+/// lighter than the lines is no line, unless its ink may come in `shades`.
+pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shades: bool) -> (Raster<f32>, Mask) {
     if let Threshold::Fixed(t) = threshold {
         let mask = ink.map(|i| f64::from(i) > t);
         return (scaled(ink, (2.0 * t) as f32), mask);
     }
-    let floor = (6.0 * noise).max(0.06) as f32;
+    let floor = floor(noise);
     let Some((otsu, core)) = global_levels(&ink, floor) else {
         let mask = ink.map(|_| false);
         return (ink, mask);
     };
-    if noise == 0.0 && core > 0.8 {
+    if noise == 0.0 && core > 0.8 && !shades {
         let mask = ink.map(|i| i > level(noise));
         return (ink, mask);
     }
@@ -72,6 +73,11 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold) -> (R
     };
     let mask = ink.map(|i| i > level(noise));
     (ink, mask)
+}
+
+/// The least ink that stands out from the grain.
+fn floor(noise: f64) -> f32 {
+    (6.0 * noise).max(0.06) as f32
 }
 
 /// The ink in 256 steps.

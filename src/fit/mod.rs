@@ -2,20 +2,22 @@
 //!
 //! A trail is split at its corners. Each section becomes the chain of lines, arcs and cubics that explains its
 //! points best at the least cost (`segmentation`); then joints are made sharp or smooth, lines that nearly keep
-//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`).
+//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`). Where outlines are
+//! asked for, the edges of each stroke are fitted in the same way (`outline`).
 
 mod arc;
 mod cubic;
 mod joints;
 mod line;
+mod outline;
 mod samples;
 mod segmentation;
 mod solid;
 mod stroke;
 
 use crate::cancel::Cancel;
-use crate::clean::{LineImage, unblurred_width};
-use crate::drawing::{Centreline, Color, Drawing, Stroke};
+use crate::clean::unblurred_width;
+use crate::drawing::{Centreline, Drawing, Fill, Stroke};
 use crate::error::Result;
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
@@ -38,42 +40,61 @@ impl Tolerance {
     }
 }
 
-/// Fits every trail of a graph. The drawing is in pixels of the line image.
+/// What a trail becomes.
+enum Drawn {
+    Stroke(Stroke),
+    Outlines(Vec<Fill>),
+}
+
+/// Fits every trail of a graph. The drawing is in pixels of the scan.
 ///
 /// # Errors
 /// The token's.
-pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Drawing> {
-    let tolerance = Tolerance { fit: (options.detail * image.line_width).max(0.1), width: image.line_width };
-    let mut drawing = Drawing::new(image.ink.width() as f64, image.ink.height() as f64);
-    let fitted: Vec<Option<(Centreline, f64)>> = graph
+pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Drawing> {
+    let page = &graph.page;
+    let tolerance = Tolerance { fit: (options.detail * page.line_width).max(0.1), width: page.line_width };
+    let outlined = options.width == StrokeWidth::Outline;
+    let fitted: Vec<Option<Drawn>> = graph
         .trails
         .par_iter()
         .map(|trail| {
             cancel.check()?;
             let walk = graph.walk(trail);
-            Ok(stroke::fit_trail(&walk, trail.closed, tolerance).map(|centreline| {
-                let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(image.line_width);
-                (centreline, unblurred_width(measured, image.blur))
-            }))
+            let Some(centreline) = stroke::fit_trail(&walk, trail.closed, tolerance) else { return Ok(None) };
+            let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(page.line_width);
+            let width = unblurred_width(measured, page.blur);
+            let stroke = Stroke { centreline, width, color: trail.color, dashes: trail.dashes };
+            if !outlined || stroke.dashes.is_some() {
+                return Ok(Some(Drawn::Stroke(stroke)));
+            }
+            let profile = outline::Profile::new(&walk, page.blur, width);
+            let outlines = outline::outline(&stroke, &profile, &graph.revisits(trail), tolerance);
+            Ok(Some(Drawn::Outlines(outlines)))
         })
         .collect::<Result<_>>()?;
-    let lines =
-        fitted.into_iter().flatten().map(|(centreline, width)| Stroke { centreline, width, color: Color::BLACK });
-    let dots = graph.dots.iter().map(|&(centre, diameter)| Stroke {
-        centreline: Centreline::Dot(centre),
-        width: diameter,
-        color: Color::BLACK,
-    });
-    drawing.strokes = lines.chain(dots).collect();
-    set_widths(&mut drawing, options.width, image.scale);
-    drawing.fills = image.solids.iter().map(|s| solid::smooth(s, tolerance)).collect();
-    Ok(drawing)
+    let mut drawing =
+        Drawing { fills: graph.fills.iter().map(|s| solid::smooth(s, tolerance)).collect(), ..Drawing::default() };
+    for drawn in fitted.into_iter().flatten() {
+        match drawn {
+            Drawn::Stroke(stroke) => drawing.strokes.push(stroke),
+            Drawn::Outlines(outlines) => drawing.fills.extend(outlines),
+        }
+    }
+    drawing.strokes.extend(graph.dots.iter().map(|dot| Stroke {
+        centreline: Centreline::Dot(dot.centre),
+        width: dot.diameter,
+        color: dot.color,
+        dashes: None,
+    }));
+    set_widths(&mut drawing, options.width, page.scale);
+    let scaled = drawing.scaled(1.0 / page.scale);
+    Ok(Drawing { width: page.width, height: page.height, dpi: page.dpi, ..scaled })
 }
 
 /// Replaces measured widths where one width is asked for.
 fn set_widths(drawing: &mut Drawing, width: StrokeWidth, scale: f64) {
     let all = match width {
-        StrokeWidth::Measured => return,
+        StrokeWidth::Measured | StrokeWidth::Outline => return,
         StrokeWidth::Uniform => median_width(drawing.strokes.iter().map(|s| s.width)),
         StrokeWidth::Fixed(px) => Some(px * scale),
     };

@@ -5,12 +5,12 @@ use super::joints::join;
 use super::samples::Samples;
 use super::segmentation::segment;
 use crate::drawing::Fill;
-use kurbo::{BezPath, PathEl, Point};
+use kurbo::BezPath;
 
 /// A traced outline as smooth curves and sharp corners.
 pub(super) fn smooth(fill: &Fill, tolerance: Tolerance) -> Fill {
     let mut outline = BezPath::new();
-    for ring in rings(&fill.outline) {
+    for ring in fill.rings() {
         let mut points = ring.clone();
         points.push(ring[0]);
         let weights = vec![1.0; points.len()];
@@ -25,18 +25,4 @@ pub(super) fn smooth(fill: &Fill, tolerance: Tolerance) -> Fill {
         outline.close_path();
     }
     Fill { outline, color: fill.color }
-}
-
-/// The closed polygons of a path of straight pieces.
-fn rings(path: &BezPath) -> Vec<Vec<Point>> {
-    let mut rings: Vec<Vec<Point>> = Vec::new();
-    for el in path.elements() {
-        match *el {
-            PathEl::MoveTo(p) => rings.push(vec![p]),
-            PathEl::LineTo(p) => rings.last_mut().into_iter().for_each(|r| r.push(p)),
-            _ => {}
-        }
-    }
-    rings.retain(|r| r.len() > 2);
-    rings
 }

@@ -5,6 +5,7 @@ use super::ends::{End, end_id};
 use super::nodes::Node;
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::LineImage;
+use crate::drawing::Color;
 use crate::options::Options;
 use crate::streamline::{STEP, Streamline};
 use kurbo::{Line, Point};
@@ -74,8 +75,7 @@ impl<'a> Assembly<'a> {
             (2, true) => JunctionKind::Corner,
             _ => JunctionKind::Branch,
         };
-        let indices =
-            nodes.iter().map(|n| out.graph.add_node(Junction { position: n.position, kind: kind(n) })).collect();
+        let indices = nodes.iter().map(|n| out.graph.add_node(Junction::new(n.position, kind(n)))).collect();
         let trimmed = (0..lines.len()).map(|i| trim(image, &lines[i], i, ends, nodes, &node_of_end));
         let (lines, shift): (Vec<_>, Vec<_>) = trimmed.unzip();
         let cuts = vec![Vec::new(); lines.len()];
@@ -126,7 +126,7 @@ impl<'a> Assembly<'a> {
             for place in [a, b] {
                 blank(&mut lines[place.line], place.at, overlap);
             }
-            let node = self.out.graph.add_node(Junction { position, kind: JunctionKind::Crossing });
+            let node = self.out.graph.add_node(Junction::new(position, JunctionKind::Crossing));
             self.cuts[a.line].push(Cut { at: a.at, node });
             self.cuts[b.line].push(Cut { at: b.at, node });
         }
@@ -166,7 +166,7 @@ impl<'a> Assembly<'a> {
         let last = piece_count(&line) as f64;
         if line.closed {
             if cuts.is_empty() {
-                let seam = Junction { position: line.points[0], kind: JunctionKind::Seam };
+                let seam = Junction::new(line.points[0], JunctionKind::Seam);
                 cuts.push(Cut { at: 0.0, node: self.out.graph.add_node(seam) });
             }
             cuts.sort_by(|a, b| a.at.total_cmp(&b.at));
@@ -212,7 +212,8 @@ impl<'a> Assembly<'a> {
             if used[start / 2] {
                 continue;
             }
-            let mut trail = Trail { edges: Vec::new(), closed: self.lines[start / 2].closed };
+            let closed = self.lines[start / 2].closed;
+            let mut trail = Trail { edges: Vec::new(), closed, color: Color::BLACK, dashes: None };
             let mut entry = start;
             loop {
                 let (line, side) = (entry / 2, entry % 2);

@@ -1,6 +1,8 @@
 //! The ends of streamlines, before they are resolved.
 
+use super::Dot;
 use crate::clean::LineImage;
+use crate::drawing::Color;
 use crate::streamline::{STEP, Stop, Streamline, Tail};
 use kurbo::{Point, Vec2};
 
@@ -88,7 +90,7 @@ fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
 }
 
 /// Takes out lines that are dots: about as long, caps included, as they are wide, and touching nothing else.
-pub(super) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<(Point, f64)>, Vec<Streamline>) {
+pub(super) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<Dot>, Vec<Streamline>) {
     let mut dots = Vec::new();
     let mut lines = Vec::new();
     for streamline in streamlines {
@@ -101,8 +103,8 @@ pub(super) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<
     (dots, lines)
 }
 
-/// The centre and diameter of a streamline's ink, if it is a dot.
-fn dot(image: &LineImage, line: &Streamline) -> Option<(Point, f64)> {
+/// A streamline's ink, if it is a dot.
+fn dot(image: &LineImage, line: &Streamline) -> Option<Dot> {
     let length = line.points.len() as f64 * STEP;
     if length > 2.6 * image.line_width || line.points.is_empty() {
         return None;
@@ -110,7 +112,8 @@ fn dot(image: &LineImage, line: &Streamline) -> Option<(Point, f64)> {
     let middle = line.points[line.points.len() / 2];
     let blob = Blob::around(image, middle, 3.0 * image.line_width + 4.0)?;
     let round = blob.long < 1.35 * blob.short + 0.5;
-    (round && blob.short < 2.5 * image.line_width).then_some((blob.centre, blob.short.max(1.0)))
+    let dot = Dot { centre: blob.centre, diameter: blob.short.max(1.0), color: Color::BLACK };
+    (round && blob.short < 2.5 * image.line_width).then_some(dot)
 }
 
 /// An isolated region of ink.

@@ -3,24 +3,33 @@
 //! A streamline runs straight through crossings and, at its ends, over the middle of whatever stopped it up to
 //! the far edge of the ink. Here each end is resolved: against the body of another line it is a tee, against
 //! other ends a corner or a branch, in the open a free end half a width short of the edge. Then arms are paired
-//! into strokes.
+//! into strokes, which end where their colour does (`pens`) and go on behind short breaks in their ink (`gaps`).
 
 mod assemble;
+mod confidence;
 mod contacts;
 mod ends;
+mod gaps;
 mod nodes;
+mod pens;
 mod rejoin;
+mod taper;
 
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
+use crate::drawing::{Color, Dashes, Fill};
 use crate::error::Result;
-use crate::options::Options;
+use crate::options::{Options, StrokeWidth};
 use crate::streamline::Streamline;
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
+use serde::{Deserialize, Serialize};
+
+pub use confidence::DOUBTFUL;
 
 /// What meets at a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum JunctionKind {
     /// One line ends in the open.
     FreeEnd,
@@ -34,6 +43,8 @@ pub enum JunctionKind {
     Branch,
     /// A closed line's arbitrary first point.
     Seam,
+    /// The ink ends, and the line goes on behind a gap.
+    Gap,
 }
 
 /// A node of the stroke graph.
@@ -43,6 +54,16 @@ pub struct Junction {
     pub position: Point,
     /// What meets here.
     pub kind: JunctionKind,
+    /// How sure place and pairing are, from 0 to 1: how nearly the arms' extensions meet here, times how much worse
+    /// the next best way of pairing them would be. A free end is as sure as the paper around it is wide.
+    pub confidence: f64,
+}
+
+impl Junction {
+    /// A node that nothing speaks against.
+    pub fn new(position: Point, kind: JunctionKind) -> Self {
+        Self { position, kind, confidence: 1.0 }
+    }
 }
 
 /// An edge of the stroke graph: a piece of line between two nodes.
@@ -61,20 +82,99 @@ pub struct Trail {
     pub edges: Vec<(EdgeIndex, bool)>,
     /// Whether the walk ends where it started.
     pub closed: bool,
+    /// Ink colour.
+    pub color: Color,
+    /// The pattern of a dashed line, in pixels of the line image.
+    pub dashes: Option<Dashes>,
 }
 
-/// The topology of a drawing.
+/// A blob of about a line width in both directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dot {
+    /// Its centre, in pixels of the line image.
+    pub centre: Point,
+    /// Its diameter, in pixels of the line image.
+    pub diameter: f64,
+    /// Ink colour.
+    pub color: Color,
+}
+
+/// The page that a graph was traced from, as far as fitting has to know it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Page {
+    /// Width of the scan in pixels.
+    pub width: f64,
+    /// Height of the scan in pixels.
+    pub height: f64,
+    /// Dots per inch of the scan, where known.
+    pub dpi: Option<f64>,
+    /// Pixels of the line image per pixel of the scan.
+    pub scale: f64,
+    /// Typical line width in pixels of the line image.
+    pub line_width: f64,
+    /// Standard deviation of the blur of the lines in pixels of the line image.
+    pub blur: f64,
+}
+
+impl Default for Page {
+    /// A page of no size with lines one pixel wide.
+    fn default() -> Self {
+        Self { width: 0.0, height: 0.0, dpi: None, scale: 1.0, line_width: 1.0, blur: 0.0 }
+    }
+}
+
+impl Page {
+    /// The page of a line image; its resolution is not known there.
+    fn of(image: &LineImage) -> Self {
+        let side = |pixels: usize| pixels as f64 / image.scale;
+        let (width, height) = (side(image.ink.width()), side(image.ink.height()));
+        Self { width, height, dpi: None, scale: image.scale, line_width: image.line_width, blur: image.blur }
+    }
+}
+
+/// The topology of a drawing, with all that fitting takes.
 #[derive(Clone, Debug, Default)]
 pub struct StrokeGraph {
+    /// The page.
+    pub page: Page,
     /// Nodes and edges.
     pub graph: StableUnGraph<Junction, Edge>,
     /// The strokes; every edge belongs to exactly one.
     pub trails: Vec<Trail>,
-    /// Blobs of about a line width in both directions: centre and diameter.
-    pub dots: Vec<(Point, f64)>,
+    /// Dots.
+    pub dots: Vec<Dot>,
+    /// Outlines of solid regions, straight from point to point, in pixels of the line image.
+    pub fills: Vec<Fill>,
 }
 
 impl StrokeGraph {
+    /// Shares of a trail's length halfway between two visits of one node: there the trail can be parted so that no
+    /// part crosses itself.
+    pub(crate) fn revisits(&self, trail: &Trail) -> Vec<f64> {
+        let mut visits: Vec<(petgraph::graph::NodeIndex, f64)> = Vec::new();
+        let mut walked = 0.0;
+        for &(edge, reversed) in &trail.edges {
+            let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
+                continue;
+            };
+            if visits.is_empty() {
+                visits.push((if reversed { b } else { a }, 0.0));
+            }
+            walked += e.points.windows(2).map(|p| (p[1] - p[0]).hypot()).sum::<f64>();
+            visits.push((if reversed { a } else { b }, walked));
+        }
+        let mut breaks = Vec::new();
+        for (j, &(node, at)) in visits.iter().enumerate() {
+            let before = visits[..j].iter().rposition(|v| v.0 == node);
+            // That a closed trail comes home is no crossing.
+            let home = |i: usize| trail.closed && i == 0 && j + 1 == visits.len();
+            if let Some(i) = before.filter(|&i| !home(i)) {
+                breaks.push(0.5 * (visits[i].1 + at) / walked.max(1e-9));
+            }
+        }
+        breaks
+    }
+
     /// Points and widths along a trail, and whether each point is a corner: a node at which two lines end.
     pub(crate) fn walk(&self, trail: &Trail) -> Vec<TrailPoint> {
         let mut walk: Vec<TrailPoint> = Vec::new();
@@ -117,7 +217,12 @@ pub(crate) struct TrailPoint {
 /// # Errors
 /// The token's.
 pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, cancel: &Cancel) -> Result<StrokeGraph> {
-    let (dots, mut lines) = ends::split_dots(image, streamlines);
+    let (mut dots, mut lines) = ends::split_dots(image, streamlines);
+    let pens = pens::Pens::of(image, &lines, &dots);
+    if let Some(pens) = &pens {
+        lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
+        dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
+    }
     let mut resolved = Resolved::new(image, &lines, cancel)?;
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
     if !cuts.is_empty() {
@@ -125,7 +230,18 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, c
         resolved = Resolved::new(image, &lines, cancel)?;
     }
     let mut graph = assemble::assemble(image, &lines, &resolved.ends, &resolved.nodes, options);
+    graph.page = Page::of(image);
     graph.dots = dots;
+    graph.fills = image.solids.clone();
+    if let Some(pens) = &pens {
+        pens.paint(&mut graph);
+    }
+    if options.width == StrokeWidth::Outline {
+        taper::measure(image, &mut graph);
+    }
+    gaps::bridge(image, &mut graph, options);
+    confidence::rate(&mut graph);
+    cancel.check()?;
     Ok(graph)
 }
 

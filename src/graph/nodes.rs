@@ -253,7 +253,7 @@ fn near_side_of_gap(ink: impl Fn(f64) -> f32) -> f64 {
 }
 
 /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
-fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
+pub(super) fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
     let normal = tail.heading.turn_90();
     let s = (towards - tail.point).dot(tail.heading).clamp(0.0, 5.0 * line_width);
     let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);

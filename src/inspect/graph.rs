@@ -1,7 +1,7 @@
 //! Streamlines and the stroke graph.
 
 use super::overlay::{DECIMALS, Overlay, chain, color, entry, path_data};
-use crate::graph::{JunctionKind, StrokeGraph};
+use crate::graph::{DOUBTFUL, JunctionKind, StrokeGraph};
 use crate::load::Scan;
 use crate::streamline::Streamline;
 use crate::write::Rounding;
@@ -43,8 +43,8 @@ pub fn graph_overlay(scan: &Scan, scale: f64, graph: &StrokeGraph) -> String {
     }
     overlay.add(edges);
     let mut rings = line_group(0.6 * unit).set("stroke", "#c000c0");
-    for &(center, diameter) in &graph.dots {
-        rings = rings.add(Path::new().set("d", path_data(&disc(to_scan * center, 0.5 * diameter / scale))));
+    for dot in &graph.dots {
+        rings = rings.add(Path::new().set("d", path_data(&disc(to_scan * dot.centre, 0.5 * dot.diameter / scale))));
     }
     overlay.add(rings);
     let mut legend = vec![entry("#555", format!("{} trails", graph.trails.len()))];
@@ -55,17 +55,29 @@ pub fn graph_overlay(scan: &Scan, scale: f64, graph: &StrokeGraph) -> String {
         legend.push(entry(fill, format!("{} {label}", nodes.len())));
     }
     legend.push(entry("#c000c0", format!("{} dots", graph.dots.len())));
+    let doubtful: Vec<Point> =
+        graph.graph.node_weights().filter(|n| n.confidence < DOUBTFUL).map(|n| to_scan * n.position).collect();
+    let mut halos = line_group(0.7 * unit).set("stroke", DOUBT);
+    for &p in &doubtful {
+        halos = halos.add(Path::new().set("d", path_data(&disc(p, 4.5 * unit))));
+    }
+    overlay.add(halos);
+    legend.push(entry(DOUBT, format!("{} doubtful (wide ring)", doubtful.len())));
     overlay.finish(&legend)
 }
 
+/// The ring around a node of low confidence.
+const DOUBT: &str = "#ff0090";
+
 /// Every kind of node with its colour and the words of the legend.
-const KINDS: [(JunctionKind, &str, &str); 6] = [
+const KINDS: [(JunctionKind, &str, &str); 7] = [
     (JunctionKind::FreeEnd, "#00a040", "free ends (disc)"),
     (JunctionKind::Corner, "#f08000", "corners (square)"),
     (JunctionKind::Tee, "#0060e0", "tees (triangle)"),
     (JunctionKind::Crossing, "#e00000", "crossings (x)"),
     (JunctionKind::Branch, "#9000c0", "branches (diamond)"),
     (JunctionKind::Seam, "#707070", "seams (ring)"),
+    (JunctionKind::Gap, "#00a0b0", "ends at gaps (small disc)"),
 ];
 
 /// Marks of one kind as one path.
@@ -95,6 +107,7 @@ fn mark(kind: JunctionKind, p: Point, r: f64) -> BezPath {
         }
         JunctionKind::Branch => corners(&[(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)]),
         JunctionKind::Seam => disc(p, 0.8 * r),
+        JunctionKind::Gap => disc(p, 0.45 * r),
     }
 }
 

@@ -87,9 +87,15 @@ impl LoadOptions {
 /// # Errors
 /// [`Error::Read`] where the file cannot be read, and the errors of [`load_bytes`].
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Input> {
-    let name = path.display().to_string();
-    let bytes = read(path).map_err(|cause| Error::Read { input: name.clone(), cause })?;
-    load_bytes(&name, &bytes, options)
+    load_bytes(&path.display().to_string(), &read_bytes(path)?, options)
+}
+
+/// The bytes of an input file, or of standard input where the path is `-`.
+///
+/// # Errors
+/// [`Error::Read`].
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    read(path).map_err(|cause| Error::Read { input: path.display().to_string(), cause })
 }
 
 fn read(path: &Path) -> std::io::Result<Vec<u8>> {

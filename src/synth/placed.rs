@@ -43,6 +43,7 @@ pub fn placed(rng: &mut impl Rng, drawing: &Drawing, size: usize) -> Option<Draw
             centreline: mapped(&s.centreline, map),
             width: (s.width * thinner * (wobble * noise::gaussian(rng)).exp()).max(1.0),
             color: s.color,
+            dashes: None,
         })
         .collect();
     Some(sheet)

@@ -99,7 +99,7 @@ mod tests {
 
     fn stroke(a: (f64, f64), b: (f64, f64)) -> Stroke {
         let centreline = Centreline::Path { segments: vec![Segment::Line(Line::new(a, b))], closed: false };
-        Stroke { centreline, width: 1.0, color: Color::BLACK }
+        Stroke { centreline, width: 1.0, color: Color::BLACK, dashes: None }
     }
 
     /// A fixed sequence of numbers in `[0, 1)` that looks random.

@@ -2,7 +2,8 @@
 
 use super::path_data::PathData;
 use super::{Rounding, pen_order};
-use crate::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
+use crate::drawing::{Centreline, Color, Dashes, Drawing, Fill, Segment, Stroke};
+use kurbo::Shape;
 use std::collections::BTreeMap;
 use svg::node::Comment;
 use svg::node::element::{Circle, Group, Line, Path, Title};
@@ -113,12 +114,8 @@ fn median_width(drawing: &Drawing) -> f64 {
     widths.get(widths.len() / 2).copied().unwrap_or(1.0)
 }
 
-fn hex(Color([r, g, b]): Color) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
-
 fn group(number: usize, color: Color, layer: &Layer, spare_width: f64, rounding: Rounding) -> Group {
-    let color = hex(color);
+    let color = color.to_string();
     let mut group = Group::new()
         .set("id", format!("layer{number}"))
         .set("inkscape:groupmode", "layer")
@@ -146,35 +143,56 @@ fn group(number: usize, color: Color, layer: &Layer, spare_width: f64, rounding:
         } else {
             &stroke.centreline
         };
-        append(&mut group, centreline, width, rounding);
+        let dashes = stroke.dashes.map(|d| if reversed { d.reversed(centreline.to_path().perimeter(1e-3)) } else { d });
+        append(&mut group, centreline, Pen { width, dashes }, rounding);
     }
     group
 }
 
+/// How a stroke is drawn.
+struct Pen {
+    width: String,
+    dashes: Option<Dashes>,
+}
+
+impl Pen {
+    /// Sets the attributes of the pen on an element.
+    fn apply<E: Node + Clone>(&self, mut element: E, rounding: Rounding) -> E {
+        element.assign("stroke-width", self.width.as_str());
+        if let Some(Dashes { dash, gap, offset }) = self.dashes {
+            // The pattern repeats, so its errors add up.
+            let fine = |v: f64| rounding.finer(2).text(v);
+            element.assign("stroke-dasharray", format!("{} {}", fine(dash), fine(gap)));
+            if offset >= rounding.step() {
+                element.assign("stroke-dashoffset", fine(offset));
+            }
+        }
+        element
+    }
+}
+
 /// Appends a stroke in its plainest form.
-fn append(group: &mut Group, centreline: &Centreline, width: String, rounding: Rounding) {
+fn append(group: &mut Group, centreline: &Centreline, pen: Pen, rounding: Rounding) {
     let text = |value: f64| rounding.text(value);
-    let path = |d: String| Path::new().set("d", d);
+    let path = |d: String| pen.apply(Path::new().set("d", d), rounding);
     match centreline {
         Centreline::Path { segments, closed } => match (&segments[..], closed) {
-            ([Segment::Line(l)], false) if rounding.point(l.p0) != rounding.point(l.p1) => group.append(
-                Line::new()
+            ([Segment::Line(l)], false) if rounding.point(l.p0) != rounding.point(l.p1) => {
+                let line = Line::new()
                     .set("x1", text(l.p0.x))
                     .set("y1", text(l.p0.y))
                     .set("x2", text(l.p1.x))
-                    .set("y2", text(l.p1.y))
-                    .set("stroke-width", width),
-            ),
-            _ => group.append(path(PathData::chain(rounding, segments, *closed)).set("stroke-width", width)),
+                    .set("y2", text(l.p1.y));
+                group.append(pen.apply(line, rounding));
+            }
+            _ => group.append(path(PathData::chain(rounding, segments, *closed))),
         },
-        Centreline::Circle(c) if c.radius.abs() >= rounding.step() => group.append(
-            Circle::new()
-                .set("cx", text(c.center.x))
-                .set("cy", text(c.center.y))
-                .set("r", text(c.radius.abs()))
-                .set("stroke-width", width),
-        ),
-        Centreline::Circle(c) => group.append(path(PathData::dot(rounding, c.center)).set("stroke-width", width)),
-        Centreline::Dot(p) => group.append(path(PathData::dot(rounding, *p)).set("stroke-width", width)),
+        Centreline::Circle(c) if c.radius.abs() >= rounding.step() => {
+            let circle =
+                Circle::new().set("cx", text(c.center.x)).set("cy", text(c.center.y)).set("r", text(c.radius.abs()));
+            group.append(pen.apply(circle, rounding));
+        }
+        Centreline::Circle(c) => group.append(path(PathData::dot(rounding, c.center))),
+        Centreline::Dot(p) => group.append(path(PathData::dot(rounding, *p))),
     }
 }

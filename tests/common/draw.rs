@@ -46,7 +46,7 @@ pub fn dot(center: impl Into<Point>, diameter: f64) -> Stroke {
 }
 
 fn stroke(centreline: Centreline, width: f64) -> Stroke {
-    Stroke { centreline, width, color: Color::BLACK }
+    Stroke { centreline, width, color: Color::BLACK, dashes: None }
 }
 
 /// The point at a distance and an angle in degrees, clockwise on the screen.
@@ -106,6 +106,44 @@ pub fn scan_by(drawing: &Drawing, pen: Pen) -> Scan {
     }
     let gray = pixmap.pixels().iter().map(|p| 1.0 - f32::from(p.alpha()) / 255.0).collect();
     scan_of(Raster::from_vec(width as usize, height as usize, gray).expect("one sample a pixel"))
+}
+
+/// Strokes in their own colours on a ground, drawn by a round pen; later strokes cover earlier ones.
+pub fn color_scan(drawing: &Drawing, ground: Color) -> Scan {
+    let (width, height) = (drawing.width as u32, drawing.height as u32);
+    let mut pixmap = Pixmap::new(width, height).expect("a canvas");
+    let skia = |Color([r, g, b]): Color| tiny_skia::Color::from_rgba8(r, g, b, 255);
+    pixmap.fill(skia(ground));
+    let mut paint = Paint::default();
+    for fill in &drawing.fills {
+        paint.set_color(skia(fill.color));
+        pixmap.fill_path(&skia_path(&fill.outline), &paint, FillRule::EvenOdd, Transform::identity(), None);
+    }
+    for stroke in &drawing.strokes {
+        paint.set_color(skia(stroke.color));
+        let pen = tiny_skia::Stroke {
+            width: stroke.width as f32,
+            line_cap: LineCap::Round,
+            line_join: LineJoin::Round,
+            ..tiny_skia::Stroke::default()
+        };
+        pixmap.stroke_path(&skia_path(&stroke.centreline.to_path()), &paint, &pen, Transform::identity(), None);
+    }
+    let pixels = pixmap.pixels();
+    let rgb = image::RgbImage::from_fn(width, height, |x, y| {
+        let p = pixels[(y * width + x) as usize];
+        image::Rgb([p.red(), p.green(), p.blue()])
+    });
+    scan_of_rgb(rgb)
+}
+
+/// A scan of colours without a resolution.
+pub fn scan_of_rgb(rgb: image::RgbImage) -> Scan {
+    let luma = |x: usize, y: usize| {
+        let [r, g, b] = rgb.get_pixel(x as u32, y as u32).0.map(|v| f32::from(v) / 255.0);
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    };
+    Scan { gray: Raster::from_fn(rgb.width() as usize, rgb.height() as usize, luma), rgb: Some(rgb), dpi: None }
 }
 
 fn skia_path(path: &BezPath) -> tiny_skia::Path {

@@ -103,8 +103,17 @@ mod tests {
         let ink = Raster::from_fn(9, 9, |x, y| if (3..6).contains(&x) && (2..7).contains(&y) { 1.0f32 } else { 0.0 });
         let mask: Mask = ink.map(|i| i > 0.5);
         let depth = ink.clone();
-        let image =
-            LineImage { ink, mask, depth, line_width: 3.0, scale: 1.0, noise: 0.0, blur: 0.0, solids: Vec::new() };
+        let image = LineImage {
+            ink,
+            mask,
+            depth,
+            line_width: 3.0,
+            scale: 1.0,
+            noise: 0.0,
+            blur: 0.0,
+            solids: Vec::new(),
+            colors: None,
+        };
         let pixels = (0..81).map(|i| (i % 9, i / 9));
         let received: f64 = pixels.clone().filter(|&p| image.mask[p]).map(|(x, y)| moments(&image, x, y).m0).sum();
         let beside = |&(x, y): &(usize, usize)| {

@@ -19,7 +19,7 @@ fn picture(lines: &[Line]) -> LineImage {
     let mut drawing = Drawing::new(SIZE as f64, SIZE as f64);
     for &line in lines {
         let centreline = Centreline::Path { segments: vec![Segment::Line(line)], closed: false };
-        drawing.strokes.push(Stroke { centreline, width: 5.0, color: Color::BLACK });
+        drawing.strokes.push(Stroke { centreline, width: 5.0, color: Color::BLACK, dashes: None });
     }
     clean(&Scan { gray: render(&drawing).map(|i| 1.0 - i), rgb: None, dpi: None }, &Options::default())
 }
@@ -28,7 +28,7 @@ fn picture(lines: &[Line]) -> LineImage {
 fn bare(ink: Raster<f32>) -> LineImage {
     let mask: Mask = ink.map(|i| i > 0.5);
     let depth = mask.map(|m| f32::from(u8::from(m)));
-    LineImage { ink, mask, depth, line_width: 3.0, scale: 1.0, noise: 0.0, blur: 0.0, solids: Vec::new() }
+    LineImage { ink, mask, depth, line_width: 3.0, scale: 1.0, noise: 0.0, blur: 0.0, solids: Vec::new(), colors: None }
 }
 
 fn through_center(angle: f64) -> Line {

@@ -4,7 +4,7 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use fieldtrace::batch::Share;
 use fieldtrace::load::LoadOptions;
-use fieldtrace::options::{self, Invert, Options, StrokeWidth, Threshold};
+use fieldtrace::options::{self, Dashing, Invert, Options, StrokeWidth, Threshold};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -17,6 +17,8 @@ Examples:
   trace sketch.png --debug-dir look       also writes a picture of each stage to look/
   trace scans -r -o drawings              every drawing of a folder and the folders in it
   trace '2024-*/*.tif' -o drawings        every drawing that matches
+  trace scan.png -o graph.json            the stroke graph, to be looked at or corrected
+  trace graph.json -o out.svg             the strokes of a graph
   trace field scan.png -o field.npz       the direction field alone
 
 A file whose name is that of a subcommand is given as ./field.
@@ -60,12 +62,12 @@ pub(crate) enum Command {
 /// The arguments of a trace.
 #[derive(Debug, Args)]
 pub(crate) struct TraceArgs {
-    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG; `-` is standard input. Several, a folder
-    /// or a pattern make a batch
+    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG, or a stroke graph in JSON; `-` is standard
+    /// input. Several, a folder or a pattern make a batch
     #[arg(value_name = "IN", required_unless_present = "manifest")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The SVG to write, or the folder for a batch; `-` is standard output [default: IN with .svg, or - for
-    /// standard input]
+    /// The SVG to write, the stroke graph where the name ends in .json, or the folder for a batch; `-` is
+    /// standard output [default: IN with .svg, or - for standard input]
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
@@ -79,6 +81,9 @@ pub(crate) struct TraceArgs {
     /// Decimals of the coordinates and widths in the output
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = parse_precision, help_heading = "Output")]
     pub(crate) precision: usize,
+    /// Also write the stroke graph, as JSON that can be corrected and traced on
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) graph: Option<PathBuf>,
     /// Also write a picture of each stage, laid over the input, to this folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub(crate) debug_dir: Option<PathBuf>,
@@ -244,11 +249,22 @@ pub(crate) struct FitArgs {
     /// Drop strokes shorter than this many line widths, unless they are dots [default: 0.5]
     #[arg(long, value_name = "W", value_parser = parse_number, allow_negative_numbers = true)]
     min_length: Option<f64>,
-    /// Stroke widths: `measured` for each, `uniform` for the drawing's median, or a number of pixels
-    /// [default: measured]
+    /// Stroke widths: `measured` for each, `uniform` for the drawing's median, a number of pixels, or
+    /// `outline` for filled outlines that keep the taper of each [default: measured]
     #[arg(long, value_name = "WIDTH", value_parser = parse_width, allow_negative_numbers = true)]
     width: Option<StrokeWidth>,
+    /// Bridge breaks in a line of at most this many line widths, where direction and distance agree;
+    /// `auto` does so for a pencil's on a scan [default: auto]
+    #[arg(long, value_name = "W", value_parser = parse_gap, allow_negative_numbers = true)]
+    gap: Option<Gap>,
+    /// Dashes at even distances: `keep` each as a stroke, or `join` them into a dashed one [default: keep]
+    #[arg(long, value_name = "WHAT", value_parser = parse_dashes)]
+    dashes: Option<Dashing>,
 }
+
+/// Line widths of paper, or `None` for `auto`.
+#[derive(Clone, Copy, Debug)]
+struct Gap(Option<f64>);
 
 /// What is said on standard error.
 #[derive(Debug, Args)]
@@ -322,6 +338,8 @@ pub(crate) fn options(clean: &CleanArgs, fit: Option<&FitArgs>) -> Options {
         threshold: clean.threshold.unwrap_or(base.threshold),
         invert: clean.invert.unwrap_or(base.invert),
         width: fit.and_then(|f| f.width).unwrap_or(base.width),
+        gap: fit.and_then(|f| f.gap).map_or(base.gap, |Gap(gap)| gap),
+        dashes: fit.and_then(|f| f.dashes).unwrap_or(base.dashes),
     }
 }
 
@@ -360,11 +378,29 @@ fn parse_invert(text: &str) -> Result<Invert, String> {
     }
 }
 
+fn parse_gap(text: &str) -> Result<Gap, String> {
+    match text {
+        "auto" => Ok(Gap(None)),
+        _ => parse_number(text).map(|w| Gap(Some(w))).map_err(|_| "neither auto nor a number".into()),
+    }
+}
+
+fn parse_dashes(text: &str) -> Result<Dashing, String> {
+    match text {
+        "keep" => Ok(Dashing::Keep),
+        "join" => Ok(Dashing::Join),
+        _ => Err("not one of keep, join".into()),
+    }
+}
+
 fn parse_width(text: &str) -> Result<StrokeWidth, String> {
     match text {
         "measured" => Ok(StrokeWidth::Measured),
         "uniform" => Ok(StrokeWidth::Uniform),
-        _ => parse_number(text).map(StrokeWidth::Fixed).map_err(|_| "neither measured, uniform nor a number".into()),
+        "outline" => Ok(StrokeWidth::Outline),
+        _ => parse_number(text)
+            .map(StrokeWidth::Fixed)
+            .map_err(|_| "neither measured, uniform, outline nor a number".into()),
     }
 }
 

@@ -52,6 +52,9 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
 /// The folder that the outputs go to.
 fn folder(args: &TraceArgs) -> Result<&Path, Failure> {
     let usage = |text: &str| Err(Failure::Usage(text.into()));
+    if args.graph.is_some() {
+        return usage("--graph names one file, not one for each drawing of a batch");
+    }
     if args.debug_dir.is_some() {
         return usage("--debug-dir shows one drawing, not a batch");
     }

@@ -39,6 +39,7 @@ impl Failure {
                 | Error::NothingVisible { .. }
                 | Error::Weights { .. }
                 | Error::List { .. }
+                | Error::Graph { .. }
                 | Error::Write { .. }
         );
         let text = one_line(error);

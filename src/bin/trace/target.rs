@@ -4,9 +4,9 @@ use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 
 /// Kinds of files that are not what their content would be.
-const OTHER_FORMATS: [&str; 20] = [
+const OTHER_FORMATS: [&str; 19] = [
     "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "gif", "pnm", "pbm", "pgm", "ppm", "npz", "npy", "pdf", "eps",
-    "dxf", "json", "ps", "ai",
+    "dxf", "ps", "ai",
 ];
 
 /// The path as it is shown in messages.
@@ -28,11 +28,11 @@ pub(crate) fn extension(path: &Path) -> String {
 /// Whether a path has the extension of a file of some kind.
 pub(crate) fn is_file_name(path: &Path) -> bool {
     let extension = extension(path);
-    extension == "svg" || OTHER_FORMATS.contains(&&*extension)
+    ["svg", "json"].contains(&&*extension) || OTHER_FORMATS.contains(&&*extension)
 }
 
-/// The SVG that a trace writes: the one that was named, or the input's name with `.svg`.
-pub(crate) fn svg_path(input: &Path, named: Option<&Path>) -> Result<PathBuf, Failure> {
+/// What a trace writes: the file that was named, or the input's name with `.svg`.
+pub(crate) fn output_path(input: &Path, named: Option<&Path>) -> Result<PathBuf, Failure> {
     let output = match named {
         Some(path) => path.to_owned(),
         None if is_stream(input) => PathBuf::from("-"),
@@ -40,10 +40,27 @@ pub(crate) fn svg_path(input: &Path, named: Option<&Path>) -> Result<PathBuf, Fa
     };
     let extension = extension(&output);
     if OTHER_FORMATS.contains(&&*extension) {
-        return Err(Failure::Usage(format!("{}: the output is SVG, not {extension}", name(&output))));
+        return Err(Failure::Usage(format!(
+            "{}: the output is SVG, not {extension} (the graph is .json)",
+            name(&output)
+        )));
     }
     keep_input(input, &output)?;
     Ok(output)
+}
+
+/// Where the graph goes beside the output, which may be neither the input nor the output itself.
+pub(crate) fn graph_path<'a>(
+    input: &Path,
+    output: &Path,
+    named: Option<&'a Path>,
+) -> Result<Option<&'a Path>, Failure> {
+    let Some(graph) = named else { return Ok(None) };
+    keep_input(input, graph)?;
+    if graph == output {
+        return Err(Failure::Usage(format!("{}: the graph and the output are one file", name(graph))));
+    }
+    Ok(named)
 }
 
 /// Refuses to write over the input.

@@ -1,0 +1,334 @@
+//! Lines that go on behind a gap in their ink.
+//!
+//! Two free ends face one another when each lies on the other's course and the courses agree. A short gap between
+//! them is bridged: a light pencil left it. Many of them at even distances along one line are dashes, which are kept
+//! as they are, or joined into one dashed stroke where that is asked for.
+
+use super::confidence::{PointsOfEdges, course, points_of_edges};
+use super::nodes::arm_line;
+use super::{Edge, JunctionKind, StrokeGraph, Trail};
+use crate::clean::{LEAST_GRAIN, LineImage};
+use crate::drawing::Dashes;
+use crate::options::{Dashing, Options};
+use crate::streamline::{STEP, Tail, angle_between};
+use kurbo::{CubicBez, Line, ParamCurve, ParamCurveNearest, Point};
+use petgraph::stable_graph::{EdgeIndex, NodeIndex};
+use petgraph::visit::EdgeRef;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+
+/// The gap that is bridged in a scan, in line widths, when nothing else is asked for. On a clean render every gap
+/// was meant.
+const SCAN_GAP: f64 = 1.5;
+/// Between dashes there is at most so much paper, in line widths.
+const DASH_GAP: f64 = 8.0;
+/// How far an end may lie beside the other's course: in line widths, and as a share of the distance.
+const BESIDE: f64 = 0.25;
+const BESIDE_SHARE: f64 = 0.15;
+/// Courses turn by less than this (26 degrees) over a gap, beyond what their curvature makes of it.
+const TURN: f64 = 0.45;
+/// A stroke of less than this many of its widths is straight as far as its course can be told.
+const SHORT: f64 = 4.0;
+/// Widths differ by less than this factor.
+const WIDTHS: f64 = 1.6;
+/// Dashes are at least this many.
+const FEWEST_DASHES: usize = 4;
+/// Lengths of dashes, and of the gaps between them, keep to their median but for this share and so many pixels.
+const UNEVEN: f64 = 0.25;
+const UNEVEN_PIXELS: f64 = 1.5;
+/// A dash is at most this many times as long as the gap after it.
+const LONGEST_DASH: f64 = 8.0;
+
+/// One end of an open stroke, in the open.
+struct FreeEnd {
+    node: NodeIndex,
+    point: Point,
+    course: Tail,
+    width: f64,
+    /// Length of its stroke.
+    length: f64,
+}
+
+/// Two ends that face each other, and how badly.
+#[derive(Clone, Copy)]
+struct Link {
+    ends: [usize; 2],
+    /// Paper between their inks, in pixels.
+    paper: f64,
+    misfit: f64,
+}
+
+/// Bridges gaps and finds dashes, as the options ask.
+pub(super) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Options) {
+    let gap = options.gap.unwrap_or(if image.noise > LEAST_GRAIN { SCAN_GAP } else { 0.0 }) * image.line_width;
+    let join = options.dashes == Dashing::Join;
+    if gap <= 0.0 && !join {
+        return;
+    }
+    let finder = Finder::new(image, graph);
+    let links = finder.links(gap.max(DASH_GAP * image.line_width));
+    let (dashed, plain) = finder.dashes(&links);
+    let short: Vec<Link> = plain.into_iter().filter(|l| l.paper <= gap && finder.is_short(l)).collect();
+    let mut seams: Vec<(Link, Option<Dashes>)> = short.into_iter().map(|link| (link, None)).collect();
+    if join {
+        seams.extend(dashed.into_iter().flat_map(|(links, dashes)| links.into_iter().map(move |l| (l, Some(dashes)))));
+    }
+    let ends = finder.ends;
+    join_trails(graph, &ends, &seams);
+}
+
+struct Finder<'a> {
+    image: &'a LineImage,
+    graph: &'a StrokeGraph,
+    points: PointsOfEdges,
+    /// Two for each stroke: where it starts and where it ends; `None` where that is not in the open.
+    ends: Vec<Option<FreeEnd>>,
+}
+
+impl<'a> Finder<'a> {
+    fn new(image: &'a LineImage, graph: &'a StrokeGraph) -> Self {
+        let ends = graph.trails.iter().flat_map(|trail| [0, 1].map(|side| free_end(graph, trail, side))).collect();
+        Self { image, graph, points: points_of_edges(graph), ends }
+    }
+
+    /// Pairs of ends that face each other over at most `reach` pixels of paper, each end in one pair: the best first.
+    fn links(&self, reach: f64) -> Vec<Link> {
+        let places = self.ends.iter().enumerate().filter_map(|(i, end)| {
+            let p = end.as_ref()?.point;
+            Some(GeomWithData::new([p.x, p.y], i))
+        });
+        let tree = RTree::bulk_load(places.collect());
+        let mut candidates = Vec::new();
+        for (a, end) in self.ends.iter().enumerate() {
+            let Some(end) = end else { continue };
+            let radius = reach + WIDTHS * end.width.max(self.image.line_width);
+            let near = tree.locate_within_distance([end.point.x, end.point.y], radius * radius);
+            candidates
+                .extend(near.filter(|b| b.data > a).filter_map(|b| self.link(a, b.data)).filter(|l| l.paper <= reach));
+        }
+        candidates.sort_by(|x, y| (x.paper + x.misfit).total_cmp(&(y.paper + y.misfit)).then(x.ends.cmp(&y.ends)));
+        let mut taken = vec![false; self.ends.len()];
+        candidates.retain(|link| {
+            let free = link.ends.iter().all(|&e| !taken[e]);
+            if free {
+                link.ends.iter().for_each(|&e| taken[e] = true);
+            }
+            free
+        });
+        candidates
+    }
+
+    /// The gap between two ends, if each lies on the other's course.
+    fn link(&self, i: usize, j: usize) -> Option<Link> {
+        let (a, b) = (self.ends[i].as_ref()?, self.ends[j].as_ref()?);
+        let (width, distance) = (0.5 * (a.width + b.width), (b.point - a.point).hypot());
+        if a.width.max(b.width) > WIDTHS * a.width.min(b.width) || distance < 1e-6 {
+            return None;
+        }
+        if self.graph.trails[i / 2].color != self.graph.trails[j / 2].color {
+            return None;
+        }
+        // The two ends of one stroke close it only when it is far longer than the gap.
+        if i / 2 == j / 2 && a.length < 4.0 * distance {
+            return None;
+        }
+        let beside = |from: &FreeEnd, to: &FreeEnd| {
+            let d = to.point - from.point;
+            let s = d.dot(from.course.heading);
+            let off = d.dot(from.course.heading.turn_90()) - 0.5 * from.course.curvature * s * s;
+            (s > 0.0).then_some(off.abs())
+        };
+        let misfit = beside(a, b)?.max(beside(b, a)?);
+        // Both head into the gap, so the second curves the other way.
+        let bend = 0.5 * (a.course.curvature - b.course.curvature) * distance;
+        let turn = angle_between(a.course.heading, -b.course.heading) - bend;
+        let agree = misfit <= BESIDE * self.image.line_width + BESIDE_SHARE * distance && turn.abs() <= TURN;
+        let link = Link { ends: [i, j], paper: (distance - width).max(0.0), misfit };
+        (agree && self.is_paper(a, b)).then_some(link)
+    }
+
+    /// Whether there is nothing but paper between two ends.
+    fn is_paper(&self, a: &FreeEnd, b: &FreeEnd) -> bool {
+        let gap = Line::new(a.point, b.point);
+        let inked = (1..8).filter(|k| self.image.ink.sample(gap.eval(f64::from(*k) / 8.0)) > 0.6).count();
+        let reach = 0.5 * gap.length() + self.image.line_width;
+        let middle = gap.midpoint();
+        let own = |e| [a.node, b.node].iter().any(|&n| self.graph.graph.edges(n).any(|edge| edge.id() == e));
+        let mut near = self.points.locate_within_distance([middle.x, middle.y], reach * reach);
+        let blocked = near.any(|p| {
+            let place = Point::new(p.geom()[0], p.geom()[1]);
+            !own(p.data) && gap.nearest(place, 1e-6).distance_sq < (0.75 * self.image.line_width).powi(2)
+        });
+        inked < 7 && !blocked
+    }
+
+    /// Whether a gap is short beside the strokes that it parts.
+    fn is_short(&self, link: &Link) -> bool {
+        let length = |end: usize| self.ends[end].as_ref().map_or(0.0, |e| e.length);
+        link.ends.iter().all(|&end| length(end) > 1.5 * link.paper.max(self.image.line_width))
+    }
+
+    /// Chains of dashes with their links, and the links that are between none.
+    fn dashes(&self, links: &[Link]) -> (Vec<(Vec<Link>, Dashes)>, Vec<Link>) {
+        let partner = partners(self.ends.len(), links);
+        let mut dashed = Vec::new();
+        let mut is_dashed = vec![false; self.ends.len()];
+        for chain in chains(self.ends.len() / 2, &partner) {
+            if let Some(dashes) = self.pattern(&chain, &partner, links) {
+                let of_chain: Vec<Link> = (0..chain.len())
+                    .filter_map(|k| partner[2 * chain[k].0 + usize::from(!chain[k].1)])
+                    .map(|(_, link)| links[link])
+                    .collect();
+                of_chain.iter().for_each(|l| l.ends.iter().for_each(|&e| is_dashed[e] = true));
+                dashed.push((of_chain, dashes));
+            }
+        }
+        (dashed, links.iter().filter(|l| !is_dashed[l.ends[0]]).copied().collect())
+    }
+
+    /// The even pattern of a chain of strokes; `None` where it is not even.
+    fn pattern(&self, chain: &[(usize, bool)], partner: &[Option<(usize, usize)>], links: &[Link]) -> Option<Dashes> {
+        let n = chain.len();
+        if n < FEWEST_DASHES {
+            return None;
+        }
+        let lengths: Vec<f64> = chain.iter().map(|&(t, _)| length(self.graph, &self.graph.trails[t])).collect();
+        let exit = |k: usize| partner[2 * chain[k].0 + usize::from(!chain[k].1)];
+        let closed = exit(n - 1).is_some();
+        let distance = |link: usize| {
+            let [a, b] = links[link].ends.map(|e| self.ends[e].as_ref().map_or(Point::ZERO, |e| e.point));
+            (b - a).hypot()
+        };
+        let gaps: Vec<f64> = (0..n).filter_map(|k| exit(k).map(|(_, link)| distance(link))).collect();
+        let inner = if closed { &lengths[..] } else { &lengths[1..n - 1] };
+        let (dash, gap) = (median(inner), median(&gaps));
+        let even =
+            |values: &[f64], middle: f64| values.iter().all(|v| (v - middle).abs() <= UNEVEN * middle + UNEVEN_PIXELS);
+        // The pattern may begin and end within a dash.
+        let whole = lengths[0].max(lengths[n - 1]) <= dash + UNEVEN * dash + UNEVEN_PIXELS;
+        if !even(inner, dash) || !even(&gaps, gap) || !whole || dash > LONGEST_DASH * gap {
+            return None;
+        }
+        let to_ends: f64 = lengths[1..n - 1].iter().chain(&gaps[..n - 2]).sum();
+        let period = if closed {
+            (lengths.iter().sum::<f64>() + gaps.iter().sum::<f64>()) / n as f64
+        } else {
+            to_ends / (n - 2) as f64
+        };
+        let dash = dash.min(0.95 * period);
+        let offset = if closed || (dash - lengths[0]) < UNEVEN_PIXELS { 0.0 } else { dash - lengths[0] };
+        Some(Dashes { dash, gap: period - dash, offset })
+    }
+}
+
+/// The end of a stroke at its start (0) or its last point (1), where it is in the open.
+fn free_end(graph: &StrokeGraph, trail: &Trail, side: usize) -> Option<FreeEnd> {
+    if trail.closed {
+        return None;
+    }
+    let &(edge, reversed) = if side == 0 { trail.edges.first()? } else { trail.edges.last()? };
+    let at_source = (side == 0) != reversed;
+    let (source, target) = graph.graph.edge_endpoints(edge)?;
+    let node = if at_source { source } else { target };
+    if graph.graph[node].kind != JunctionKind::FreeEnd {
+        return None;
+    }
+    let finite: Vec<f64> = graph.graph[edge].widths.iter().copied().filter(|w| w.is_finite()).collect();
+    let width = if finite.is_empty() { graph.page.line_width } else { median(&finite) };
+    let point = graph.graph[node].position;
+    let course = course(graph, edge, at_source)?;
+    let length = length(graph, trail);
+    let course = if length < SHORT * width && trail.edges.len() == 1 {
+        // Of a dash, the chord says most.
+        let chord = point - graph.graph[if at_source { target } else { source }].position;
+        Tail { heading: chord / chord.hypot().max(1e-9), curvature: 0.0, ..course }
+    } else {
+        // The course was measured a little before the end.
+        Tail { heading: arm_line(&course, point, graph.page.line_width).1, ..course }
+    };
+    Some(FreeEnd { node, point, course, width, length })
+}
+
+fn length(graph: &StrokeGraph, trail: &Trail) -> f64 {
+    let of_edge = |e: EdgeIndex| graph.graph[e].points.windows(2).map(|w: &[Point]| (w[1] - w[0]).hypot()).sum::<f64>();
+    trail.edges.iter().map(|&(e, _)| of_edge(e)).sum()
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut values = values.to_vec();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// For each end the other end of its gap, and the number of the link.
+fn partners(count: usize, links: &[Link]) -> Vec<Option<(usize, usize)>> {
+    let mut partner = vec![None; count];
+    for (k, link) in links.iter().enumerate() {
+        let [a, b] = link.ends;
+        (partner[a], partner[b]) = (Some((b, k)), Some((a, k)));
+    }
+    partner
+}
+
+/// Strokes in chains over their gaps; `true` walks a stroke backwards.
+fn chains(strokes: usize, partner: &[Option<(usize, usize)>]) -> Vec<Vec<(usize, bool)>> {
+    let mut used = vec![false; strokes];
+    let open = (0..partner.len()).filter(|&e| partner[e].is_none());
+    let mut chains = Vec::new();
+    for start in open.chain(0..partner.len()) {
+        let (mut chain, mut entry) = (Vec::new(), Some(start));
+        while let Some(end) = entry.filter(|e| !used[e / 2]) {
+            used[end / 2] = true;
+            chain.push((end / 2, end % 2 == 1));
+            entry = partner[end ^ 1].map(|(other, _)| other);
+        }
+        if !chain.is_empty() {
+            chains.push(chain);
+        }
+    }
+    chains
+}
+
+/// Joins strokes over gaps: an edge leads over each, and the strokes become one.
+fn join_trails(graph: &mut StrokeGraph, ends: &[Option<FreeEnd>], seams: &[(Link, Option<Dashes>)]) {
+    if seams.is_empty() {
+        return;
+    }
+    let links: Vec<Link> = seams.iter().map(|s| s.0).collect();
+    let partner = partners(ends.len(), &links);
+    let trails = std::mem::take(&mut graph.trails);
+    for chain in chains(trails.len(), &partner) {
+        let mut joined = Trail { edges: Vec::new(), ..trails[chain[0].0].clone() };
+        for &(stroke, backwards) in &chain {
+            let edges = &trails[stroke].edges;
+            if backwards {
+                joined.edges.extend(edges.iter().rev().map(|&(e, reversed)| (e, !reversed)));
+            } else {
+                joined.edges.extend(edges);
+            }
+            let exit = 2 * stroke + usize::from(!backwards);
+            let Some((entry, link)) = partner[exit] else { continue };
+            let (Some(from), Some(to)) = (&ends[exit], &ends[entry]) else { continue };
+            for node in [from.node, to.node] {
+                graph.graph[node].kind = JunctionKind::Gap;
+                graph.graph[node].confidence =
+                    (-(seams[link].0.misfit / (BESIDE * graph.page.line_width)).powi(2)).exp();
+            }
+            joined.edges.push((graph.graph.add_edge(from.node, to.node, over(from, to)), false));
+            joined.dashes = joined.dashes.or(seams[link].1);
+            joined.closed |= entry / 2 == chain[0].0;
+        }
+        graph.trails.push(joined);
+    }
+}
+
+/// The edge over a gap: it leaves and arrives as the strokes do.
+fn over(from: &FreeEnd, to: &FreeEnd) -> Edge {
+    let distance = (to.point - from.point).hypot();
+    let (a, b) = (from.course.heading * (distance / 3.0), to.course.heading * (distance / 3.0));
+    let curve = CubicBez::new(from.point, from.point + a, to.point + b, to.point);
+    let count = (distance / STEP).ceil().max(1.0) as usize;
+    let mut points: Vec<Point> = (0..=count).map(|k| curve.eval(k as f64 / count as f64)).collect();
+    (points[0], points[count]) = (from.point, to.point);
+    Edge { widths: vec![f64::NAN; points.len()], points }
+}
