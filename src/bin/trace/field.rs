@@ -28,7 +28,7 @@ pub(crate) fn run(args: &FieldArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of(&name, &e);
     let format = format_of(&args.output)?;
     target::keep_input(&args.input, &args.output)?;
-    let vectorizer = source::estimator(&args.source)
+    let vectorizer = source::estimator(args.source.estimator, &args.source.network)
         .and_then(|source| Vectorizer::with(args::options(&args.clean, None), source))
         .map_err(failed)?;
 

@@ -1,6 +1,7 @@
 //! `trace`: turns raster line drawings into editable strokes.
 
 mod args;
+mod eval;
 mod failure;
 mod field;
 mod source;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
 fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Some(Command::Field(args)) => field::run(&args),
+        Some(Command::Eval(args)) => eval::run(&args),
         #[cfg(feature = "learned")]
         Some(Command::Train(args)) => train::run(&args),
         None => vectorize::run(&cli.trace),

@@ -17,7 +17,7 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     let Some(input) = &args.input else { return Err(Failure::Usage("no input is given".into())) };
     let name = target::name(input);
     let failed = |e: fieldtrace::Error| Failure::of(&name, &e);
-    let vectorizer = source::estimator(&args.source)
+    let vectorizer = source::estimator(args.source.estimator, &args.source.network)
         .and_then(|source| Vectorizer::with(args::options(&args.clean, Some(&args.fit)), source))
         .map_err(failed)?;
     let output = target::svg_path(input, args.output.as_deref())?;
