@@ -14,6 +14,7 @@ use fieldtrace::metrics::{Measurement, Truth, measure};
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::write::write_file;
 use report::{Report, Row};
+use std::path::Path;
 
 /// Traces every drawing under every estimator and tells the figures.
 pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
@@ -34,12 +35,13 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
     if report.rows.is_empty() {
         return Err(Failure::File(format!("{}: nothing could be compared", target::name(&args.inputs[0]))));
     }
-    let to_stdout = args.json.as_deref().is_some_and(target::is_stream);
-    if !to_stdout {
-        print!("{}", report.table(args.files));
+    let write =
+        |path: &Path, text: String| write_file(path, text.as_bytes()).map_err(|e| Failure::of(&target::name(path), &e));
+    if !args.json.as_deref().is_some_and(target::is_stream) {
+        write(Path::new("-"), report.table(args.files))?;
     }
     if let Some(path) = &args.json {
-        write_file(path, report.json().as_bytes()).map_err(|e| Failure::of(&target::name(path), &e))?;
+        write(path, report.json())?;
     }
     Ok(())
 }
