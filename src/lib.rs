@@ -83,6 +83,7 @@ pub mod ground_truth;
 pub mod hooks;
 pub mod inspect;
 pub mod load;
+pub mod metrics;
 mod moments;
 pub mod options;
 pub mod pipeline;

@@ -1,5 +1,6 @@
 //! SVG inputs: parsed by `usvg`, rendered by `resvg` over white.
 
+mod arcs;
 mod strokes;
 
 pub use strokes::drawing;

@@ -89,7 +89,7 @@ mod tests {
         let line = Segment::Line(Line::new((10.0, 40.0), (60.0, 40.0)));
         let arc = Segment::Arc(Arc::new((60.0, 30.0), (10.0, 10.0), FRAC_PI_2, -FRAC_PI_2, 0.0));
         let centreline = Centreline::Path { segments: vec![line, arc], closed: false };
-        original.strokes.push(Stroke { centreline, width: 4.0, color: Color::BLACK });
+        original.strokes.push(Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None });
         for seed in 0..50 {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let sheet = placed(&mut rng, &original, 144).unwrap();

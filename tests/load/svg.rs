@@ -177,7 +177,9 @@ fn the_strokes_lie_on_the_ink_of_the_rendering() {
             different += (a - b).abs();
             total += b;
         }
-        assert!(total > 100.0 && different / total < 0.01, "{size}: {different} of {total}");
+        // Anti-aliasing is as coarse as a sixteenth of a pixel, and edges matter the less the larger the rendering is.
+        let bearable = 3.0 / size as f32;
+        assert!(total > 100.0 && different / total < bearable, "{size}: {different} of {total}");
     }
 }
 

@@ -20,6 +20,7 @@ Examples:
   trace scan.png -o graph.json            the stroke graph, to be looked at or corrected
   trace graph.json -o out.svg             the strokes of a graph
   trace field scan.png -o field.npz       the direction field alone
+  trace eval drawings                     how good the traces of a folder of SVGs are
 
 A file whose name is that of a subcommand is given as ./field.
 Exit codes: 0 done, 1 a file could not be traced, 2 wrong usage, 130 interrupted.";
@@ -52,6 +53,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Write the field of directions that strokes follow.
     Field(FieldArgs),
+    /// Compare traces with the strokes that were drawn.
+    Eval(EvalArgs),
     /// Train the network that predicts the field.
     #[cfg(feature = "learned")]
     Train(TrainArgs),
@@ -113,6 +116,38 @@ pub(crate) struct FieldArgs {
     pub(crate) talk: TalkArgs,
 }
 
+/// The arguments of `trace eval`.
+#[derive(Debug, Args)]
+pub(crate) struct EvalArgs {
+    /// Folders or files: SVGs with the true strokes, and the rasters to trace beside them. The truth of NAME.png and of
+    /// NAME.KIND.png is NAME.gt.svg or NAME.svg; an SVG without a raster is rendered
+    #[arg(value_name = "IN", required = true)]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Trace only the rasters NAME.KIND.png and the like; `render` renders the SVGs instead
+    #[arg(long, value_name = "KIND", value_delimiter = ',')]
+    pub(crate) kind: Vec<String>,
+    /// What gives the directions; several are compared
+    #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = DEFAULT_ESTIMATOR)]
+    pub(crate) estimators: Vec<Estimator>,
+    /// Also a row for each drawing
+    #[arg(long)]
+    pub(crate) files: bool,
+    /// Also write all figures to a file; `-` is standard output, in place of the table
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) load: LoadArgs,
+    #[command(flatten)]
+    pub(crate) clean: CleanArgs,
+    #[command(flatten)]
+    pub(crate) fit: FitArgs,
+    #[command(flatten)]
+    pub(crate) network: NetworkArgs,
+    /// No warnings
+    #[arg(short, long, help_heading = "Messages")]
+    pub(crate) quiet: bool,
+}
+
 /// The arguments of `trace train`.
 #[cfg(feature = "learned")]
 #[derive(Debug, Args)]
@@ -172,6 +207,14 @@ pub(crate) struct FieldSourceArgs {
     /// What gives the directions: the trained network, or the structure tensor of the ink
     #[arg(long, value_name = "KIND", default_value = DEFAULT_ESTIMATOR)]
     pub(crate) estimator: Estimator,
+    #[command(flatten)]
+    pub(crate) network: NetworkArgs,
+}
+
+/// Which network, and where it runs.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Network")]
+pub(crate) struct NetworkArgs {
     /// Weights of the network, in place of those that the program carries
     #[cfg(feature = "learned")]
     #[arg(long, value_name = "FILE")]

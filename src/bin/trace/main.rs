@@ -2,6 +2,7 @@
 
 mod args;
 mod batch;
+mod eval;
 mod failure;
 mod field;
 mod report;
@@ -37,6 +38,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Field(args)) => field::run(&args),
         Some(Command::Batch(args)) => batch::run(&args),
         None if batch::is_meant(&cli.trace) => batch::run(&cli.trace),
+        Some(Command::Eval(args)) => eval::run(&args),
         #[cfg(feature = "learned")]
         Some(Command::Train(args)) => train::run(&args),
         None => vectorize::run(&cli.trace),

@@ -1,27 +1,28 @@
 //! Where the field comes from.
 
-use crate::args::{self, CleanArgs, Estimator, FieldSourceArgs, FitArgs};
+use crate::args::{self, CleanArgs, Estimator, FieldSourceArgs, FitArgs, NetworkArgs};
 use fieldtrace::Result;
 use fieldtrace::estimate::{FieldEstimator, StructureTensor};
 use fieldtrace::pipeline::Vectorizer;
 
 /// What traces under the options and with the estimator that were asked for.
 pub(crate) fn vectorizer(source: &FieldSourceArgs, clean: &CleanArgs, fit: Option<&FitArgs>) -> Result<Vectorizer> {
-    Vectorizer::with(args::options(clean, fit), estimator(source)?)
+    Vectorizer::with(args::options(clean, fit), estimator(source.estimator, &source.network)?)
 }
 
 /// The estimator that was asked for.
-fn estimator(args: &FieldSourceArgs) -> Result<Box<dyn FieldEstimator>> {
-    match args.estimator {
+#[cfg_attr(not(feature = "learned"), allow(unused_variables))]
+pub(crate) fn estimator(kind: Estimator, network: &NetworkArgs) -> Result<Box<dyn FieldEstimator>> {
+    match kind {
         Estimator::Tensor => Ok(Box::new(StructureTensor::default())),
         #[cfg(feature = "learned")]
-        Estimator::Unet => Ok(Box::new(network(args)?)),
+        Estimator::Unet => Ok(Box::new(unet(network)?)),
     }
 }
 
 /// The network of some weights on some device.
 #[cfg(feature = "learned")]
-fn network(args: &FieldSourceArgs) -> Result<fieldtrace::estimate::UNet> {
+fn unet(args: &NetworkArgs) -> Result<fieldtrace::estimate::UNet> {
     use fieldtrace::estimate::UNet;
     use fieldtrace::unet;
     let Some(device) = unet::device(&args.device.device)? else {

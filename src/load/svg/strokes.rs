@@ -1,5 +1,6 @@
 //! The strokes of a parsed SVG: what a trace of its rendering should find.
 
+use super::arcs::with_arcs;
 use super::canvas;
 use crate::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
 use kurbo::{Affine, BezPath, CubicBez, Line, PathEl, Point, QuadBez, Shape};
@@ -15,7 +16,8 @@ const MOST_DASHES: f64 = 50_000.0;
 /// The strokes and fills of an SVG in pixels of its rendering at `scale` pixels for one CSS pixel.
 ///
 /// - Each subpath of a stroked shape is one [`Stroke`], dashes are strokes of their own, and subpaths without length
-///   are dots where they have caps. Quadratic pieces are raised to cubics.
+///   are dots where they have caps. Quadratic pieces are raised to cubics; circular arcs are arcs again, and circles
+///   circles.
 /// - All transforms are applied; a width is scaled by the square root of the transform's area factor.
 /// - A filled shape is a [`Fill`]; text is filled outlines.
 /// - The colour is that of the paint over white; gradients count as the mean of their stops and patterns as black.
@@ -198,7 +200,7 @@ fn centreline(subpath: &BezPath, capped: bool) -> Option<Centreline> {
     }
     // Pieces that were left out for want of length may have been the ones that met.
     closed &= segments[segments.len() - 1].end().distance(segments[0].start()) <= 2.0 * ZERO_LENGTH;
-    Some(Centreline::Path { segments, closed })
+    Some(with_arcs(&segments, closed))
 }
 
 fn raised(q: QuadBez) -> Segment {
