@@ -13,14 +13,6 @@ use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::PolyVectorField;
 
-/// Standard deviation, in line widths, of the smoothing of fields along the ink: [`PolyVectorField::smoothed`].
-const SMOOTHING: f64 = 1.3;
-
-/// A built-in estimator's field with the noise of single pixels taken out.
-fn smoothed(field: &PolyVectorField, image: &LineImage) -> PolyVectorField {
-    field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(1.5, 8.0))
-}
-
 /// Anything that can tell the directions of a line drawing.
 pub trait FieldEstimator: Send + Sync {
     /// A short name for messages and tables.

@@ -1,6 +1,6 @@
 //! A field from local gradients, without a network: the fourth-order structure tensor.
 
-use super::{FieldEstimator, smoothed};
+use super::FieldEstimator;
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
@@ -46,7 +46,7 @@ impl FieldEstimator for StructureTensor {
             Raster::from_vec(width, height, solved.iter().map(f).collect()).expect("one solution per pixel")
         };
         let confidence = Raster::from_vec(width, height, solved.iter().map(|s| s.2).collect()).expect("likewise");
-        Ok(smoothed(&PolyVectorField::new(field(|s| s.0), field(|s| s.1), confidence)?, image))
+        PolyVectorField::new(field(|s| s.0), field(|s| s.1), confidence)
     }
 }
 

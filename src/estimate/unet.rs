@@ -1,6 +1,6 @@
 //! The field from the trained network.
 
-use super::{FieldEstimator, smoothed};
+use super::FieldEstimator;
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
@@ -25,6 +25,10 @@ const CONTEXT: usize = 8;
 
 /// Pixels off the mask that get a field too, so that it can be interpolated at the edge of the ink.
 const MARGIN: usize = 2;
+
+/// Standard deviation in line widths of the smoothing along the ink that takes the noise of single pixels out of the
+/// network's field: [`PolyVectorField::smoothed`].
+const SMOOTHING: f64 = 1.0;
 
 /// The field from the U-Net: Taktasheva et al. 2019.
 #[derive(Debug)]
@@ -106,7 +110,8 @@ impl FieldEstimator for UNet {
             }
         };
         cancel.check()?;
-        Ok(smoothed(&assemble(width, height, &image.mask, parts)?, image))
+        let field = assemble(width, height, &image.mask, parts)?;
+        Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(1.0, 8.0)))
     }
 }
 

@@ -15,6 +15,7 @@ fn drawing(paths: &[Vec<Point>], width: f64) -> Drawing {
         centreline: Centreline::Path { segments: segments(p), closed: false },
         width,
         color: Color::BLACK,
+        dashes: None,
     };
     drawing.strokes = paths.iter().map(stroke).collect();
     drawing
