@@ -8,6 +8,7 @@
 mod assemble;
 mod contacts;
 mod ends;
+mod gaps;
 mod nodes;
 mod rejoin;
 
@@ -113,6 +114,9 @@ pub(crate) struct TrailPoint {
 /// Builds the stroke graph.
 pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options) -> StrokeGraph {
     let (dots, mut lines) = ends::split_dots(image, streamlines);
+    if image.noise > 0.0 {
+        gaps::withdraw(image, &mut lines);
+    }
     let mut resolved = Resolved::new(image, &lines);
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
     if !cuts.is_empty() {
