@@ -19,6 +19,11 @@ use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
 use rayon::prelude::*;
 
+/// Deviation of points that is always taken for noise, as a share of the fit tolerance: on a clean render, and on a
+/// scan, where grain moves whole stretches of a line and neighbouring points do not show it.
+const STEADINESS: f64 = 0.26;
+const STEADINESS_NOISY: f64 = 0.275;
+
 /// How closely to fit, in pixels of the line image.
 #[derive(Clone, Copy, Debug)]
 struct Tolerance {
@@ -26,19 +31,23 @@ struct Tolerance {
     fit: f64,
     /// Line width, which sets the scale of features.
     width: f64,
+    /// Deviation below which points always agree with a curve.
+    steadiness: f64,
 }
 
 impl Tolerance {
     /// Deviation of a section's points from its curves that is taken for noise: a part of the tolerance, or what
     /// the points themselves scatter by.
     fn deviation(&self, samples: &samples::Samples) -> f64 {
-        (0.25 * self.fit).max(samples.scatter(0.7 * self.width))
+        self.steadiness.max(samples.scatter(0.7 * self.width))
     }
 }
 
 /// Fits every trail of a graph. The drawing is in pixels of the line image.
 pub fn fit(image: &LineImage, graph: &StrokeGraph, options: &Options) -> Drawing {
-    let tolerance = Tolerance { fit: (options.detail * image.line_width).max(0.1), width: image.line_width };
+    let fit = (options.detail * image.line_width).max(0.1);
+    let steadiness = if image.noise > 0.0 { STEADINESS_NOISY } else { STEADINESS } * fit;
+    let tolerance = Tolerance { fit, width: image.line_width, steadiness };
     let mut drawing = Drawing::new(image.ink.width() as f64, image.ink.height() as f64);
     let fitted: Vec<Option<(Centreline, f64)>> = graph
         .trails

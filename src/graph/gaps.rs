@@ -54,7 +54,23 @@ fn gap(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) ->
     let far = (from + steps((0.5 + BEFORE) * image.line_width + WIDEST)).min(n.saturating_sub(3));
     let size = |k: usize| image.gap(at(k), heading, end.core);
     let widest = (near..=far).max_by(|&a, &b| size(a).total_cmp(&size(b)))?;
-    if std::env::var("GAPDBG").is_ok() { let p=at(from); eprintln!("gap {:.1} {:.1} size {:.2} at {} near {} from {} n {} core {:.2} blur {:.2} sine {:.2} bandw {:.2}", p.x, p.y, size(widest), widest-from, near-from, from, n, end.core, image.blur, sine, image.line_width); }
+    if std::env::var("GAPDBG").is_ok() {
+        let p = at(from);
+        eprintln!(
+            "gap {:.1} {:.1} size {:.2} at {} near {} from {} n {} core {:.2} blur {:.2} sine {:.2} bandw {:.2}",
+            p.x,
+            p.y,
+            size(widest),
+            widest - from,
+            near - from,
+            from,
+            n,
+            end.core,
+            image.blur,
+            sine,
+            image.line_width
+        );
+    }
     (size(widest) > crate::clean::NOISY_GAP).then_some(widest)
 }
 
