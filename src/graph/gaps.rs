@@ -5,17 +5,17 @@
 
 use super::contacts::{LineIndex, Place, direction};
 use super::ends::{End, ends};
-use crate::clean::LineImage;
+use crate::clean::{LineImage, NOISY_GAP};
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};
 
-/// The middle of a gap is looked for before a crossed line's edge, up to this many line widths and pixels.
+/// The middle of a gap is looked for up to this many line widths and pixels before a crossed line's edge.
 const BEFORE: f64 = 0.1;
+const WIDEST: f64 = 1.5;
 /// An end goes at most this many line widths past a line that it runs into.
 const PAST: f64 = 1.4;
 /// Nearer than this to its own end, in line widths, a crossed line may make a corner with the end.
 const INNER: f64 = 2.0;
-const WIDEST: f64 = 1.5;
 
 /// Cuts every end of a noisy line back to the gap that it stepped over, if there is one.
 pub(super) fn withdraw(image: &LineImage, lines: &mut [Streamline]) {
@@ -27,8 +27,7 @@ pub(super) fn withdraw(image: &LineImage, lines: &mut [Streamline]) {
         .filter(|end| !end.stop.is_cut_off())
         .filter_map(|end| Some((end.line, end.side, gap(image, lines, &index, end)?)))
         .collect();
-    // The far end first, so that the indices of the near one hold.
-    for &(line, side, count) in cuts.iter().rev() {
+    for (line, side, count) in cuts {
         shorten(&mut lines[line], side, count);
     }
 }
@@ -54,24 +53,7 @@ fn gap(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) ->
     let far = (from + steps((0.5 + BEFORE) * image.line_width + WIDEST)).min(n.saturating_sub(3));
     let size = |k: usize| image.gap(at(k), heading, end.core);
     let widest = (near..=far).max_by(|&a, &b| size(a).total_cmp(&size(b)))?;
-    if std::env::var("GAPDBG").is_ok() {
-        let p = at(from);
-        eprintln!(
-            "gap {:.1} {:.1} size {:.2} at {} near {} from {} n {} core {:.2} blur {:.2} sine {:.2} bandw {:.2}",
-            p.x,
-            p.y,
-            size(widest),
-            widest - from,
-            near - from,
-            from,
-            n,
-            end.core,
-            image.blur,
-            sine,
-            image.line_width
-        );
-    }
-    (size(widest) > crate::clean::NOISY_GAP).then_some(widest)
+    (size(widest) > NOISY_GAP).then_some(widest)
 }
 
 /// Whether a place is at least `margin` points away from both ends of a line.
@@ -79,8 +61,9 @@ fn is_inner(line: &Streamline, at: f64, margin: usize) -> bool {
     line.closed || (at >= margin as f64 && at + margin as f64 <= line.points.len() as f64 - 1.0)
 }
 
-/// Takes points off an end.
+/// Takes points off an end; two are left.
 fn shorten(line: &mut Streamline, side: usize, count: usize) {
+    let count = count.min(line.points.len().saturating_sub(2));
     if side == 0 {
         line.points.drain(..count);
         line.widths.drain(..count);
