@@ -22,7 +22,8 @@ use crate::raster::{Mask, Raster};
 use image::{ImageBuffer, Luma};
 use imageproc::distance_transform::euclidean_squared_distance_transform;
 use imageproc::filter::gaussian_blur_f32;
-use kurbo::Point;
+use kurbo::{Point, Vec2};
+use std::f64::consts::TAU;
 
 /// The ink of a drawing, evenly lit and at a size that the later stages know.
 #[derive(Clone, Debug)]
@@ -55,23 +56,53 @@ const LEAST_CONTRAST: f32 = 0.02;
 const DARKEST: f32 = 2.0;
 /// On a clean render, lines that touch show no gap longer than this, in pixels.
 const CLEAN_GAP: f64 = 0.15;
-/// On a noisy scan, a pencil line's ink may drop to this share before it counts as broken.
-const BROKEN: f32 = 0.3;
+/// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
+pub(crate) const NOISY_GAP: f64 = 0.65;
+/// The middle of a line that is averaged over to see past its grain, as a share of its width to either side.
+const CORE_BAND: f64 = 0.35;
 
 impl LineImage {
     /// Whether the ink of a line, `core` in its middle, runs from one point to another without a break.
     ///
-    /// On a clean render the ink that is missing along the way adds up to the length of the gap, however it
-    /// lies on the pixels.
+    /// The ink that is missing along the way adds up to the length of the gap, however it lies on the pixels and
+    /// however much it is blurred.
     pub(crate) fn is_inked(&self, a: Point, b: Point, core: f32) -> bool {
         let length = (b - a).hypot();
         let count = (length / 0.25).ceil().max(1.0) as usize;
-        let along = (0..=count).map(|k| self.ink.sample(a.lerp(b, k as f64 / count as f64)) / core);
+        let along = (0..=count).map(|k| a.lerp(b, k as f64 / count as f64));
         if self.noise > 0.0 {
-            return along.min_by(f32::total_cmp).is_none_or(|least| least > BROKEN);
+            let heading = if length > 1e-9 { (b - a) / length } else { return true };
+            return along.map(|p| self.gap(p, heading, core)).fold(0.0, f64::max) <= NOISY_GAP;
         }
-        let missing: f64 = along.map(|ink| (1.0 - f64::from(ink)).max(0.0)).sum();
+        let missing: f64 = along.map(|p| (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0)).sum();
         missing * length / count as f64 <= CLEAN_GAP
+    }
+
+    /// Ink in the middle of a line: on a noisy scan the mean across it, since single pixels are mostly grain.
+    pub(crate) fn core(&self, p: Point, heading: Vec2) -> f32 {
+        if self.noise == 0.0 {
+            return self.ink.sample(p);
+        }
+        let step = heading.turn_90() * (0.5 * CORE_BAND * self.line_width);
+        (-2..=2).map(|k| self.ink.sample(p + step * f64::from(k))).sum::<f32>() / 5.0
+    }
+
+    /// Length of the gap at a point of a noisy line, in pixels: the least squares size of a gap that the scan has
+    /// blurred.
+    pub(crate) fn gap(&self, p: Point, heading: Vec2, core: f32) -> f64 {
+        let deviation = self.blur.max(0.7);
+        let spacing = 0.25;
+        let reach = (2.0 * deviation / spacing).ceil() as i32;
+        let (mut seen, mut whole) = (0.0, 0.0);
+        for k in -reach..=reach {
+            let offset = spacing * f64::from(k);
+            // The profile of a blurred gap of unit length.
+            let profile = (-0.5 * (offset / deviation).powi(2)).exp() / (deviation * TAU.sqrt());
+            let missing = 1.0 - f64::from(self.core(p + heading * offset, heading) / core);
+            seen += profile * missing;
+            whole += profile * profile;
+        }
+        seen / whole
     }
 }
 

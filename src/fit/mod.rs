@@ -23,6 +23,11 @@ use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
 use rayon::prelude::*;
 
+/// Deviation of points that is always taken for noise, as a share of the fit tolerance: on a clean render, and on a
+/// scan, where grain moves whole stretches of a line and neighbouring points do not show it.
+const STEADINESS: f64 = 0.26;
+const STEADINESS_NOISY: f64 = 0.275;
+
 /// How closely to fit, in pixels of the line image.
 #[derive(Clone, Copy, Debug)]
 struct Tolerance {
@@ -30,13 +35,15 @@ struct Tolerance {
     fit: f64,
     /// Line width, which sets the scale of features.
     width: f64,
+    /// Deviation below which points always agree with a curve.
+    steadiness: f64,
 }
 
 impl Tolerance {
     /// Deviation of a section's points from its curves that is taken for noise: a part of the tolerance, or what
     /// the points themselves scatter by.
     fn deviation(&self, samples: &samples::Samples) -> f64 {
-        (0.25 * self.fit).max(samples.scatter(0.7 * self.width))
+        self.steadiness.max(samples.scatter(0.7 * self.width))
     }
 }
 
@@ -52,7 +59,10 @@ enum Drawn {
 /// The token's.
 pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Drawing> {
     let page = &graph.page;
-    let tolerance = Tolerance { fit: (options.detail * page.line_width).max(0.1), width: page.line_width };
+    let fit = (options.detail * page.line_width).max(0.1);
+    // Only what was scanned is blurred.
+    let steadiness = if page.blur > 0.0 { STEADINESS_NOISY } else { STEADINESS } * fit;
+    let tolerance = Tolerance { fit, width: page.line_width, steadiness };
     let outlined = options.width == StrokeWidth::Outline;
     let fitted: Vec<Option<Drawn>> = graph
         .trails

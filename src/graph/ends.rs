@@ -68,7 +68,9 @@ fn end(image: &LineImage, lines: &[Streamline], line: usize, side: usize) -> Opt
         .take_while(|&k| k < from + 3 || streamline.widths[index(k)].is_finite())
         .map(|k| streamline.points[index(k)])
         .collect();
-    let core = median(run.iter().map(|&p| image.ink.sample(p))).map_or(1.0, |c| c.clamp(0.3, 1.0));
+    let course = |w: &[Point]| (w[1] - w[0]).hypot2() > 1e-12;
+    let along = run.windows(2).filter(|w| course(w)).map(|w| image.core(w[0], (w[1] - w[0]).normalize()));
+    let core = median(along).map_or(1.0, |c| c.clamp(0.3, 1.0));
     let oldest_first: Vec<Point> = run.into_iter().rev().collect();
     let outwards = streamline.points[index(0)] - streamline.points[index((n - 1).min(2))];
     let heading = if outwards.hypot() > 1e-9 { outwards.normalize() } else { Vec2::new(1.0, 0.0) };

@@ -14,6 +14,7 @@ mod nodes;
 mod pens;
 mod rejoin;
 mod taper;
+mod withdraw;
 
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
@@ -222,6 +223,9 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, c
     if let Some(pens) = &pens {
         lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
         dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
+    }
+    if image.noise > 0.0 {
+        withdraw::withdraw(image, &mut lines);
     }
     let mut resolved = Resolved::new(image, &lines, cancel)?;
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
