@@ -57,7 +57,7 @@ const DARKEST: f32 = 2.0;
 /// On a clean render, lines that touch show no gap longer than this, in pixels.
 const CLEAN_GAP: f64 = 0.15;
 /// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
-pub(crate) const NOISY_GAP: f64 = 0.65;
+const NOISY_GAP: f64 = 0.65;
 /// The middle of a line that is averaged over to see past its grain, as a share of its width to either side.
 const CORE_BAND: f64 = 0.35;
 

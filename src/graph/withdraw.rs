@@ -5,7 +5,7 @@
 
 use super::contacts::{LineIndex, Place, direction};
 use super::ends::{End, ends};
-use crate::clean::{LineImage, NOISY_GAP};
+use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};
 
@@ -16,6 +16,10 @@ const WIDEST: f64 = 1.5;
 const PAST: f64 = 1.4;
 /// Nearer than this to its own end, in line widths, a crossed line may make a corner with the end.
 const INNER: f64 = 2.0;
+
+/// Missing ink, in pixels of gap, from which an end is cut: more than what keeps two lines apart that do not touch, since
+/// here ink is given up.
+const CLEAR_GAP: f64 = 0.9;
 
 /// Cuts every end of a noisy line back to the gap that it stepped over, if there is one.
 pub(super) fn withdraw(image: &LineImage, lines: &mut [Streamline]) {
@@ -53,7 +57,7 @@ fn gap(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) ->
     let far = (from + steps((0.5 + BEFORE) * image.line_width + WIDEST)).min(n.saturating_sub(3));
     let size = |k: usize| image.gap(at(k), heading, end.core);
     let widest = (near..=far).max_by(|&a, &b| size(a).total_cmp(&size(b)))?;
-    (size(widest) > NOISY_GAP).then_some(widest)
+    (size(widest) > CLEAR_GAP).then_some(widest)
 }
 
 /// Whether a place is at least `margin` points away from both ends of a line.
