@@ -19,7 +19,8 @@ fn drawing() -> Drawing {
         Centreline::Circle(Circle::new((22.0, 58.0), 15.0)),
     ];
     let mut drawing = Drawing::new(96.0, 76.0);
-    drawing.strokes = centrelines.map(|centreline| Stroke { centreline, width: 4.0, color: Color::BLACK }).into();
+    drawing.strokes =
+        centrelines.map(|centreline| Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None }).into();
     drawing
 }
 
