@@ -21,7 +21,7 @@ fn drawing() -> Drawing {
     let mut drawing = Drawing::new(96.0, 76.0);
     drawing.strokes =
         centrelines.map(|centreline| Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None }).into();
-    drawing
+    drawing.scaled(0.75)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -33,12 +33,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scale = field.width() / scan.gray.width() as u32;
     let ink = RgbaImage::from_fn(field.width(), field.height(), |x, y| {
         let (x, y) = ((x / scale) as usize, (y / scale) as usize);
-        let gray = if y < scan.gray.height() { (255.0 * scan.gray[(x, y)]) as u8 } else { 255 };
+        let light = scan.gray.get(x as i64, y as i64).unwrap_or(1.0);
+        let gray = (255.0 * light) as u8;
         image::Rgba([gray, gray, gray, 255])
     });
     let mut both = RgbaImage::new(2 * field.width(), field.height());
     imageops::replace(&mut both, &ink, 0, 0);
     imageops::replace(&mut both, &field, i64::from(field.width()), 0);
-    imageops::resize(&both, both.width() / 2, both.height() / 2, imageops::FilterType::Triangle).save(out)?;
+    both.save(out)?;
     Ok(())
 }
