@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::compare::{apart, bow, lines};
-use common::draw::{arc, line, polar, scan, scan_of, sheet};
+use common::compare::{apart, bow, common_ink, lines};
+use common::draw::{arc, line, polar, rendered, scan, scan_of, sheet};
 use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Dashes, Drawing, Stroke};
@@ -120,19 +120,6 @@ fn hatching_stays_separate_lines() {
 fn dashed(angle: f64, width: f64, dashes: Dashes) -> Stroke {
     let stroke = line(polar(CENTER, angle, -70.0), polar(CENTER, angle, 70.0), width);
     Stroke { dashes: Some(dashes), ..stroke }
-}
-
-/// A drawing as a scan, dashes and all.
-fn rendered(drawing: &Drawing) -> Scan {
-    scan_of(render(drawing).map(|ink| 1.0 - ink))
-}
-
-/// Share of ink that two drawings have in common.
-fn common_ink(a: &Drawing, b: &Drawing) -> f64 {
-    let (a, b) = (render(a), render(b));
-    let sum =
-        |f: fn(f32, f32) -> f32| -> f64 { a.data().iter().zip(b.data()).map(|(&a, &b)| f64::from(f(a, b))).sum() };
-    sum(f32::min) / sum(f32::max)
 }
 
 const PATTERNS: [(f64, f64); 4] = [(4.0, 4.0), (8.0, 4.0), (6.0, 3.0), (3.0, 5.0)];

@@ -2,13 +2,13 @@
 
 mod common;
 
-use common::draw::{circle, cubic, line, polar, polyline, scan, scan_of, sheet};
+use common::compare::common_ink;
+use common::draw::{circle, cubic, line, polar, polyline, rendered, scan, sheet};
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Color, Drawing, Fill};
 use fieldtrace::load::Scan;
 use fieldtrace::options::{Options, StrokeWidth};
 use fieldtrace::pipeline::Vectorizer;
-use fieldtrace::render::render;
 use kurbo::{BezPath, Point, Vec2};
 
 const CENTER: Point = Point::new(80.2, 79.7);
@@ -45,18 +45,6 @@ fn brush(angle: f64, widths: (f64, f64), bend: f64) -> Drawing {
     let mut drawing = Drawing::new(160.0, 160.0);
     drawing.fills.push(Fill { outline, color: Color::BLACK });
     drawing
-}
-
-fn rendered(drawing: &Drawing) -> Scan {
-    scan_of(render(drawing).map(|ink| 1.0 - ink))
-}
-
-/// Share of ink that two drawings have in common.
-fn common_ink(a: &Drawing, b: &Drawing) -> f64 {
-    let (a, b) = (render(a), render(b));
-    let sum =
-        |f: fn(f32, f32) -> f32| -> f64 { a.data().iter().zip(b.data()).map(|(&a, &b)| f64::from(f(a, b))).sum() };
-    sum(f32::min) / sum(f32::max)
 }
 
 const TAPERS: [(f64, f64); 4] = [(2.0, 7.0), (3.0, 6.0), (8.0, 4.0), (5.0, 5.0)];

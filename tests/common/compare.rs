@@ -1,12 +1,21 @@
 //! How far two drawings are apart.
 
 use fieldtrace::drawing::{Centreline, Drawing, Segment};
+use fieldtrace::render::render;
 use kurbo::{Affine, BezPath, ParamCurve, ParamCurveArclen, Point};
 use rstar::primitives::Line;
 use rstar::{PointDistance, RTree};
 
 /// Distance between samples along a line, in pixels.
 const SPACING: f64 = 0.25;
+
+/// Share of ink that two drawings have in common.
+pub fn common_ink(a: &Drawing, b: &Drawing) -> f64 {
+    let (a, b) = (render(a), render(b));
+    let sum =
+        |f: fn(f32, f32) -> f32| -> f64 { a.data().iter().zip(b.data()).map(|(&a, &b)| f64::from(f(a, b))).sum() };
+    sum(f32::min) / sum(f32::max)
+}
 
 /// The centrelines of a drawing.
 pub fn lines(drawing: &Drawing) -> Vec<BezPath> {

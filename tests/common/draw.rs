@@ -5,6 +5,7 @@ use fieldtrace::load::Scan;
 use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::raster::Raster;
+use fieldtrace::render::render;
 use kurbo::{Arc, BezPath, Circle, CubicBez, Line, PathEl, Point, Vec2};
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
 
@@ -164,6 +165,11 @@ fn skia_path(path: &BezPath) -> tiny_skia::Path {
 /// A grey scan without a resolution.
 pub fn scan_of(gray: Raster<f32>) -> Scan {
     Scan { gray, rgb: None, dpi: None }
+}
+
+/// A drawing as a scan, dashes and all.
+pub fn rendered(drawing: &Drawing) -> Scan {
+    scan_of(render(drawing).map(|ink| 1.0 - ink))
 }
 
 /// The trace of a scan under the default options.
