@@ -88,12 +88,12 @@ impl FieldEstimator for UNet {
         let ink = shown(image);
         let grid = Grid::new(width, height, self.config.multiple());
         let tiles: Vec<(usize, usize)> = grid.tiles().collect();
+        let tile = |at| Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
         let parts: Vec<Vec<Pixel>> = match &self.runner {
             Runner::Engine(engine) => {
                 let spare = Mutex::new(Vec::<Scratch>::new());
                 let run = |&at: &(usize, usize)| {
-                    let tile = Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
-                    let Some(tile) = tile else { return Vec::new() };
+                    let Some(tile) = tile(at) else { return Vec::new() };
                     let mut scratch = lock(&spare).pop().unwrap_or_default();
                     let pixels = tile.by_engine(engine, &mut scratch, &ink, self.config);
                     lock(&spare).push(scratch);
@@ -103,8 +103,7 @@ impl FieldEstimator for UNet {
             }
             Runner::Burn(model, device) => {
                 let run = |&at: &(usize, usize)| {
-                    let tile = Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
-                    tile.map_or_else(Vec::new, |t| t.by_burn(model, device, &ink, self.config))
+                    tile(at).map_or_else(Vec::new, |t| t.by_burn(model, device, &ink, self.config))
                 };
                 tiles.iter().map(run).collect()
             }

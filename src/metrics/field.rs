@@ -78,11 +78,13 @@ fn between(a: Vec2, b: Vec2) -> f64 {
     a.cross(b).abs().atan2(a.dot(b).abs())
 }
 
-fn single([u, v]: [Vec2; 2], direction: Vec2) -> f64 {
+/// The angle from a direction to the nearer root.
+pub(crate) fn single([u, v]: [Vec2; 2], direction: Vec2) -> f64 {
     between(u, direction).min(between(v, direction))
 }
 
-fn pair([u, v]: [Vec2; 2], a: Vec2, b: Vec2) -> f64 {
+/// The mean angle from two directions to roots of their own.
+pub(crate) fn pair([u, v]: [Vec2; 2], a: Vec2, b: Vec2) -> f64 {
     0.5 * (between(u, a) + between(v, b)).min(between(u, b) + between(v, a))
 }
 

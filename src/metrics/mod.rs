@@ -32,6 +32,8 @@ mod overlap;
 mod tests;
 
 pub use field::AngularError;
+#[cfg(feature = "learned")]
+pub(crate) use field::{pair, single};
 pub use measure::{Measurement, measure};
 pub use nodes::{Nodes, nodes};
 

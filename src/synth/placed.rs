@@ -27,7 +27,7 @@ pub fn placed(rng: &mut impl Rng, drawing: &Drawing, size: usize) -> Option<Draw
     let mirror = if rng.random_bool(0.5) { Affine::FLIP_X } else { Affine::IDENTITY };
     let map = Affine::rotate(turn) * Affine::scale(scale) * mirror;
     let seen = &drawing.strokes[rng.random_range(0..drawing.strokes.len())];
-    let from = map * mapped(&seen.centreline, Affine::IDENTITY).start();
+    let from = map * seen.centreline.start();
     let to = Point::new(within(rng, 0.1, 0.9) * size as f64, within(rng, 0.1, 0.9) * size as f64);
     let map = Affine::translate(to - from) * map;
     // One factor for all pens keeps the drawing's own mix of widths.

@@ -1,6 +1,7 @@
 //! Learning curves as a picture.
 
 use crate::error::{Error, Result};
+use crate::write::write_file;
 use std::fs;
 use std::path::Path;
 use svg::Document;
@@ -34,7 +35,7 @@ pub fn draw(metrics: &Path, out: &Path) -> Result<()> {
     for (i, (title, columns)) in PANELS.into_iter().enumerate() {
         document = panel(document, i as f64 * width + MARGIN, title, &table, columns);
     }
-    fs::write(out, document.to_string()).map_err(|cause| Error::Write { path: out.into(), cause })
+    write_file(out, document.to_string().as_bytes())
 }
 
 struct Table<'a> {

@@ -4,6 +4,7 @@
 use super::validate::{Sheet, angles, coefficients};
 use crate::error::{Error, Result};
 use crate::field::decode;
+use crate::write::write_file;
 use image::{ImageBuffer, Rgb, RgbImage};
 use kurbo::{Point, Vec2};
 use num_complex::Complex32;
@@ -36,9 +37,9 @@ pub fn draw(examples: &[(&Sheet, Vec<f32>)], out: &Path) -> Result<()> {
         y += height as i64;
     }
     let mut bytes = std::io::Cursor::new(Vec::new());
-    let failed = |cause| Error::Write { path: out.into(), cause };
-    whole.write_to(&mut bytes, image::ImageFormat::Png).map_err(|e| failed(std::io::Error::other(e)))?;
-    std::fs::write(out, bytes.into_inner()).map_err(failed)
+    let failed = |e| Error::Write { path: out.into(), cause: std::io::Error::other(e) };
+    whole.write_to(&mut bytes, image::ImageFormat::Png).map_err(failed)?;
+    write_file(out, &bytes.into_inner())
 }
 
 fn panels(sheet: &Sheet, field: &[f32]) -> [RgbImage; 5] {

@@ -67,27 +67,29 @@ impl Trainer {
     /// to start from cannot be read.
     pub fn new(config: TrainConfig, dir: &Path, device: &Device, start: &Start) -> Result<Self> {
         config.validate()?;
+        let fail = |reason: String| Err(Error::Train { reason });
+        if *start != Start::Resume && checkpoint::exists(dir) {
+            return fail(format!("{}: holds a run already; resume it or name another folder", dir.display()));
+        }
         let (source, skipped) = match &config.svgs {
             Some(folder) => Source::with_svgs(folder)?,
             None => (Source::synthetic(), Vec::new()),
         };
-        let fail = |reason: String| Err(Error::Train { reason });
         let device = device.clone().autodiff();
-        let optimizer = || AdamConfig::new().with_epsilon(1e-8).init();
         let mut run = Self {
             validator: Validator::new(&config, &source),
             source: Arc::new(source),
             skipped,
             dir: dir.into(),
             model: config.network.init(&device, config.seed),
-            optimizer: optimizer(),
+            optimizer: AdamConfig::new().with_epsilon(1e-8).init(),
             state: State::default(),
             device: device.clone(),
             config,
         };
         let weights = match start {
             Start::Resume => {
-                let Some((saved, state, model, moments)) = checkpoint::load(dir, run.model, optimizer())? else {
+                let Some((saved, state, model, moments)) = checkpoint::load(dir, run.model, run.optimizer)? else {
                     return fail(format!("{}: holds no run to go on with", dir.display()));
                 };
                 if saved != run.config {
@@ -99,9 +101,6 @@ impl Trainer {
             Start::BuiltIn => Some(unet::built_in(&device)?),
             Start::From(path) => Some(unet::load(path, &device)?),
         };
-        if checkpoint::exists(dir) {
-            return fail(format!("{}: holds a run already; resume it or name another folder", dir.display()));
-        }
         fs::create_dir_all(dir).map_err(|cause| Error::Write { path: dir.into(), cause })?;
         if let Some(weights) = weights {
             if weights.config != run.config.network {

@@ -13,8 +13,8 @@ use crate::synth::{self, ScanStyle};
 use crate::unet::shown;
 use rand::Rng;
 use rayon::prelude::*;
-use std::fs;
 use std::path::{Path, PathBuf};
+use walkdir::WalkDir;
 
 /// Longer side in pixels that SVG drawings are read at; they are scaled from there.
 const READ_SIDE: u32 = 512;
@@ -40,10 +40,7 @@ impl Source {
     /// # Errors
     /// [`Error::Read`] when the folder cannot be listed; [`Error::Train`] when nothing in it has strokes.
     pub fn with_svgs(folder: &Path) -> Result<(Self, Vec<Skipped>)> {
-        let mut paths = Vec::new();
-        list(folder, &mut paths)?;
-        paths.sort();
-        let read: Vec<_> = paths.into_par_iter().map(|path| (strokes_of(&path), path)).collect();
+        let read: Vec<_> = list(folder)?.into_par_iter().map(|path| (strokes_of(&path), path)).collect();
         let (mut drawings, mut skipped) = (Vec::new(), Vec::new());
         for (result, path) in read {
             match result {
@@ -129,15 +126,17 @@ fn strokes_of(path: &Path) -> std::result::Result<Drawing, String> {
     if drawing.strokes.is_empty() { Err("has no strokes".into()) } else { Ok(drawing) }
 }
 
-fn list(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
-    let failed = |cause| Error::Read { input: folder.display().to_string(), cause };
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.is_dir() {
-            list(&path, paths)?;
-        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
-            paths.push(path);
+/// The SVGs of a folder and of the folders in it.
+fn list(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for entry in WalkDir::new(folder).follow_links(true) {
+        let entry = entry.map_err(|e| Error::Read { input: folder.display().to_string(), cause: e.into() })?;
+        let is_svg = entry.path().extension().is_some_and(|e| e.eq_ignore_ascii_case("svg"));
+        if is_svg && !entry.file_type().is_dir() {
+            paths.push(entry.into_path());
         }
     }
-    Ok(())
+    // The order of whole paths, in which runs number them.
+    paths.sort();
+    Ok(paths)
 }

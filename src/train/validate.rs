@@ -5,8 +5,9 @@ use super::data;
 use super::pictures;
 use super::source::{Sight, Source, sight};
 use crate::error::Result;
-use crate::field::decode;
+use crate::field::{Frame, decode};
 use crate::ground_truth::{FieldTruth, Place};
+use crate::metrics::{pair, single};
 use crate::raster::Raster;
 use crate::unet::{Features, UNet, features};
 use burn::tensor::{Device, Tensor, TensorData};
@@ -162,14 +163,9 @@ pub(super) fn coefficients(field: &[f32], at: usize) -> [Complex32; 2] {
 pub(super) fn angles([c0, c2]: [Complex32; 2], truth: &FieldTruth, i: usize) -> (f64, f64) {
     let right = std::f64::consts::FRAC_PI_2;
     let [u, v] = [truth.tangent.data()[i], truth.other.data()[i]].map(|w| f64::from(w.arg()) / 2.0);
-    decode(c0, c2).map_or((right, right), |frame| {
-        let e = |root: Vec2, angle: f64| {
-            let d = Vec2::from_angle(angle);
-            root.cross(d).abs().atan2(root.dot(d).abs())
-        };
-        let straight = e(frame.u, u) + e(frame.v, v);
-        let swapped = e(frame.u, v) + e(frame.v, u);
-        (e(frame.u, u).min(e(frame.v, u)), straight.min(swapped) / 2.0)
+    decode(c0, c2).map_or((right, right), |Frame { u: first, v: second }| {
+        let (roots, u, v) = ([first, second], Vec2::from_angle(u), Vec2::from_angle(v));
+        (single(roots, u), pair(roots, u, v))
     })
 }
 

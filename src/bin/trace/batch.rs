@@ -2,12 +2,12 @@
 
 use crate::args::TraceArgs;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::report::Report;
 use crate::source;
 use crate::target;
 use fieldtrace::Error;
 use fieldtrace::batch::{Batch, FileTracer, Plan, is_pattern};
-use fieldtrace::cancel::Cancel;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,8 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     let batch = Batch {
         jobs: args.batch.jobs.map_or(0, usize::from),
         timeout: args.batch.timeout,
-        cancel: stopped_by_interrupt()?,
+        cancel: interrupt::token()
+            .map_err(|e| Failure::File(format!("interrupts from the keyboard cannot be received: {e}")))?,
     };
     let report = Report::new(&plan, &args.talk, args.batch.json);
     let outcomes =
@@ -98,19 +99,4 @@ fn listed(manifest: &Path) -> std::io::Result<Vec<PathBuf>> {
         text = fs::read_to_string(manifest)?;
     }
     Ok(text.lines().filter(|line| !line.is_empty()).map(PathBuf::from).collect())
-}
-
-/// A token that the first interrupt from the keyboard stops; the second ends the program at once.
-fn stopped_by_interrupt() -> Result<Cancel, Failure> {
-    let cancel = Cancel::default();
-    let token = cancel.clone();
-    let interrupted = move || {
-        if token.check().is_err() {
-            std::process::exit(130);
-        }
-        token.cancel();
-    };
-    ctrlc::set_handler(interrupted)
-        .map_err(|e| Failure::File(format!("interrupts from the keyboard cannot be received: {e}")))?;
-    Ok(cancel)
 }

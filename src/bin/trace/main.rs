@@ -5,6 +5,7 @@ mod batch;
 mod eval;
 mod failure;
 mod field;
+mod interrupt;
 mod report;
 mod source;
 mod target;

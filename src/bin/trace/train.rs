@@ -2,15 +2,15 @@
 
 use crate::args::TrainArgs;
 use crate::failure::Failure;
+use crate::interrupt;
 use burn::tensor::Device;
 use fieldtrace::Error;
+use fieldtrace::cancel::Cancel;
 use fieldtrace::train::{Progress, Start, TrainConfig, Trainer};
 use fieldtrace::unet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Trains from the start, from weights, or from where a run was stopped.
 pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
@@ -27,11 +27,15 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     if !args.talk.quiet {
         introduce(&trainer);
     }
-    let stop = stop_on_interrupt();
+    // The run ends after its step, with a checkpoint.
+    let stop = interrupt::token().unwrap_or_else(|e| {
+        eprintln!("trace: warning: an interrupt will not leave a checkpoint: {e}");
+        Cancel::default()
+    });
     let bar = bar(&trainer, args.talk.quiet);
     let result = trainer.run(|progress| {
         show(&bar, progress, args.talk.quiet);
-        !stop.load(Ordering::Relaxed)
+        stop.check().is_ok()
     });
     bar.finish_and_clear();
     result.map_err(failed)?;
@@ -71,22 +75,6 @@ fn introduce(trainer: &Trainer) {
     let others = if drawings == 0 { String::new() } else { format!(" and of {drawings} drawings") };
     let (step, steps, seed) = (trainer.step(), config.steps, config.seed);
     eprintln!("trace: steps {step} to {steps} on synthetic sheets{others}, seed {seed}");
-}
-
-/// Set once the user has interrupted: the run then ends after its step, with a checkpoint.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    // A second interrupt does not wait for the step to end.
-    let handler = move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    };
-    if let Err(e) = ctrlc::set_handler(handler) {
-        eprintln!("trace: warning: an interrupt will not leave a checkpoint: {e}");
-    }
-    stop
 }
 
 fn bar(trainer: &Trainer, quiet: bool) -> ProgressBar {
