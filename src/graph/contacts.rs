@@ -104,7 +104,7 @@ pub(super) fn piece_count(line: &Streamline) -> usize {
     if line.closed { line.points.len() } else { line.points.len().saturating_sub(1) }
 }
 
-fn piece(line: &Streamline, k: usize) -> Line {
+pub(super) fn piece(line: &Streamline, k: usize) -> Line {
     Line::new(line.points[k], line.points[(k + 1) % line.points.len()])
 }
 
@@ -137,9 +137,13 @@ pub(super) fn around(line: &Streamline, at: f64, reach: f64) -> impl Iterator<It
 
 /// Direction of a line at a place.
 pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
-    let line = &lines[place.line];
+    direction_at(&lines[place.line], place.at as usize)
+}
+
+/// Direction of a line from one of its points on.
+pub(super) fn direction_at(line: &Streamline, k: usize) -> Vec2 {
     let n = line.points.len();
-    let k = (place.at as usize).min(piece_count(line).saturating_sub(1));
+    let k = k.min(piece_count(line).saturating_sub(1));
     let (a, b) = if line.closed {
         (line.points[(k + n - 2) % n], line.points[(k + 3) % n])
     } else {
@@ -147,6 +151,15 @@ pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
     };
     let d = b - a;
     if d.hypot() > 1e-9 { d.normalize() } else { Vec2::new(1.0, 0.0) }
+}
+
+/// Mean width of a line around a place; the typical one where it cannot be measured.
+pub(super) fn width_at(lines: &[Streamline], place: Place, typical: f64) -> f64 {
+    let widths = &lines[place.line].widths;
+    let k = (place.at as usize).min(widths.len() - 1);
+    let around = &widths[k.saturating_sub(20)..(k + 20).min(widths.len())];
+    let finite: Vec<f64> = around.iter().copied().filter(|w| w.is_finite()).collect();
+    if finite.is_empty() { typical } else { finite.iter().sum::<f64>() / finite.len() as f64 }
 }
 
 /// What each end stops at; an end without a contact is free.
@@ -167,7 +180,7 @@ struct Finder<'a> {
 
 impl Finder<'_> {
     fn of_end(&self, end: &End) -> Vec<Contact> {
-        if end.stop.is_cut_off() {
+        if end.stop.is_cut_off() || end.stop == Stop::Settled {
             return Vec::new();
         }
         let mut contacts = self.crossed(end);
@@ -250,7 +263,7 @@ impl Finder<'_> {
     fn judge(&self, end: &End, place: Place, point: Point, heading: Vec2, beyond: f64) -> Option<Contact> {
         let along = direction(self.lines, place);
         let sine = (heading.normalize().cross(along)).abs().max(0.5);
-        let other_width = self.width_at(place);
+        let other_width = width_at(self.lines, place, self.image.line_width);
         let edge = 0.5 * other_width / sine;
         let slack = PROTRUSION * self.image.line_width.max(2.0);
         if beyond > edge + slack && end.stop != Stop::Merged {
@@ -275,14 +288,6 @@ impl Finder<'_> {
         let merged = self.ends[other].is_some_and(|e| e.stop == Stop::Merged);
         let reach = if merged { reach + self.image.line_width } else { reach };
         (distance * STEP <= reach).then_some(other)
-    }
-
-    fn width_at(&self, place: Place) -> f64 {
-        let widths = &self.lines[place.line].widths;
-        let k = (place.at as usize).min(widths.len() - 1);
-        let around = &widths[k.saturating_sub(20)..(k + 20).min(widths.len())];
-        let finite: Vec<f64> = around.iter().copied().filter(|w| w.is_finite()).collect();
-        if finite.is_empty() { self.image.line_width } else { finite.iter().sum::<f64>() / finite.len() as f64 }
     }
 
     /// A line beside the end that its last stretch does not cross, joined to it by ink.

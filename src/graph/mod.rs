@@ -5,6 +5,7 @@
 //! other ends a corner or a branch, in the open a free end half a width short of the edge. Then arms are paired
 //! into strokes, which end where their colour does (`pens`) and go on behind short breaks in their ink (`gaps`).
 
+mod approach;
 mod assemble;
 mod confidence;
 mod contacts;
@@ -13,8 +14,9 @@ mod gaps;
 mod nodes;
 mod pens;
 mod rejoin;
+mod settle;
 mod taper;
-mod withdraw;
+mod trim;
 
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
@@ -219,13 +221,14 @@ pub(crate) struct TrailPoint {
 /// The token's.
 pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, cancel: &Cancel) -> Result<StrokeGraph> {
     let (mut dots, mut lines) = ends::split_dots(image, streamlines);
+    trim::trim(image, &mut lines);
     let pens = pens::Pens::of(image, &lines, &dots);
     if let Some(pens) = &pens {
         lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
         dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
     }
     if image.noise > 0.0 {
-        withdraw::withdraw(image, &mut lines);
+        settle::settle(image, &mut lines);
     }
     let mut resolved = Resolved::new(image, &lines, cancel)?;
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);

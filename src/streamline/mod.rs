@@ -34,6 +34,8 @@ pub enum Stop {
     Solid,
     /// It was cut at a junction because it had taken another line's arm.
     Cut,
+    /// The pen was lifted right here, before another line: [`Streamline::points`] ends at the pen's last point.
+    Settled,
 }
 
 impl Stop {
