@@ -41,14 +41,21 @@ impl Profile {
         if self.is_single(width) {
             return self.middle();
         }
-        let half = 0.5 * width;
-        let left = self.left.map(|l| half - l);
-        let right = self.right.map(|r| r - half);
-        let nearest = match (left, right) {
+        let nearest = match (self.shift_by_left(width), self.shift_by_right(width)) {
             (Some(l), Some(r)) => Some(if l.abs() < r.abs() { l } else { r }),
             (one, other) => one.or(other),
         };
         nearest.filter(|s| s.abs() < 0.3 * width)
+    }
+
+    /// The same by the edge against the normal alone.
+    pub fn shift_by_left(&self, width: f64) -> Option<f64> {
+        self.left.map(|left| 0.5 * width - left)
+    }
+
+    /// The same by the edge along the normal alone.
+    pub fn shift_by_right(&self, width: f64) -> Option<f64> {
+        self.right.map(|right| right - 0.5 * width)
     }
 }
 

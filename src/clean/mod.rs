@@ -41,7 +41,8 @@ pub struct LineImage {
     pub scale: f64,
     /// Standard deviation of the paper's grain as a share of the ink; 0 for a clean render.
     pub noise: f64,
-    /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render.
+    /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render, unless it was
+    /// enlarged.
     pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
@@ -54,7 +55,7 @@ pub struct LineImage {
 const LEAST_CONTRAST: f32 = 0.02;
 /// Ink beyond this many times that of a typical line is cut off.
 const DARKEST: f32 = 2.0;
-/// On a clean render, lines that touch show no gap longer than this, in pixels.
+/// On a clean render, lines that touch show no gap longer than this, in pixels of the scan.
 const CLEAN_GAP: f64 = 0.15;
 /// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
 const NOISY_GAP: f64 = 0.65;
@@ -75,7 +76,7 @@ impl LineImage {
             return along.map(|p| self.gap(p, heading, core)).fold(0.0, f64::max) <= NOISY_GAP;
         }
         let missing: f64 = along.map(|p| (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0)).sum();
-        missing * length / count as f64 <= CLEAN_GAP
+        missing * length / count as f64 <= CLEAN_GAP * self.scale.max(1.0)
     }
 
     /// Ink in the middle of a line: on a noisy scan the mean across it, since single pixels are mostly grain.
@@ -158,7 +159,11 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     let solids = solids::take(&mut mask, &ink, &depth, line_width);
     let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
     cancel.check()?;
-    let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { 0.0 };
+    let blur = match noise > 0.0 {
+        true => blur::estimate(&ink, &mask, &depth, line_width),
+        false if scale > 1.0 => resample::SOFTENING,
+        false => 0.0,
+    };
     let ink = ink.map(|i| i.min(DARKEST));
     let colors = page.map(|page| page.colors);
     Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, colors })

@@ -1,5 +1,6 @@
 //! Very thick and very thin drawings are brought to a width that the later stages know.
 
+use super::smooth;
 use super::width::ridge_widths;
 use crate::raster::{Mask, Raster};
 use image::imageops::{FilterType, resize as resize_image};
@@ -7,7 +8,7 @@ use image::imageops::{FilterType, resize as resize_image};
 /// Lines wider than this many pixels carry no more detail for it: they are traced at half this width.
 const THICK: f64 = 14.0;
 /// Lines thinner than this many pixels are enlarged, so that edges and directions can be told apart.
-const THIN: f64 = 1.75;
+const THIN: f64 = 2.4;
 /// The largest raster that is enlarged, in pixels.
 const ENLARGE_LIMIT: usize = 30_000_000;
 
@@ -25,10 +26,16 @@ pub(super) fn scale_for(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, lin
     if shrinks { scale } else { 1.0 }
 }
 
+/// Standard deviation, in pixels of the enlarged raster, of the blur that takes the staircase of pixels out of lines that
+/// are hardly wider than a pixel.
+pub(super) const SOFTENING: f64 = 0.8;
+
 /// Resamples ink by a factor, averaging areas when shrinking.
 pub(super) fn resize(ink: Raster<f32>, scale: f64) -> Raster<f32> {
     let size = |n: usize| ((n as f64 * scale).round() as u32).max(1);
     let (width, height) = (size(ink.width()), size(ink.height()));
     let filter = if scale > 1.0 { FilterType::CatmullRom } else { FilterType::Triangle };
-    Raster::from_image(resize_image(&ink.into_image(), width, height, filter)).map(|i| i.clamp(0.0, 1.0))
+    let resized = Raster::from_image(resize_image(&ink.into_image(), width, height, filter));
+    let resized = if scale > 1.0 { smooth(resized, SOFTENING as f32) } else { resized };
+    resized.map(|i| i.clamp(0.0, 1.0))
 }

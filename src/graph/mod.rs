@@ -11,6 +11,7 @@ mod confidence;
 mod contacts;
 mod ends;
 mod gaps;
+mod merge;
 mod nodes;
 mod pens;
 mod rejoin;
@@ -230,6 +231,7 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, c
     if image.noise > 0.0 {
         settle::settle(image, &mut lines);
     }
+    merge::merge(image, &mut lines);
     let mut resolved = Resolved::new(image, &lines, cancel)?;
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
     if !cuts.is_empty() {

@@ -140,6 +140,11 @@ impl Solver<'_> {
 
     /// Least squares over the lines of all arms, drawn towards the mean of the observed contacts.
     fn meeting_point(&self, ends: &[usize], bodies: &[Place], contacts: &[&Contact]) -> Point {
+        let joined: Vec<Point> =
+            ends.iter().map(|&e| self.end(e)).filter(|e| e.stop == Stop::Joined).map(|e| e.point).collect();
+        if !joined.is_empty() {
+            return mean(&joined);
+        }
         if let ([end], [body]) = (ends, bodies)
             && self.end(*end).stop == Stop::Merged
         {

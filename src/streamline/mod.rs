@@ -36,6 +36,8 @@ pub enum Stop {
     Cut,
     /// The pen was lifted right here, before another line: [`Streamline::points`] ends at the pen's last point.
     Settled,
+    /// It meets another line at its last point, at a small angle or none.
+    Joined,
 }
 
 impl Stop {

@@ -6,10 +6,13 @@
 
 use super::{STEP, Streamline};
 use crate::clean::LineImage;
-use crate::profile::cross_profile;
+use crate::profile::{Profile, cross_profile};
 use kurbo::{Point, Vec2};
 
 const ROUNDS: usize = 3;
+/// Ink wider than this many times the line's width, and so many pixels, is not the line's alone.
+const WIDENED: f64 = 1.12;
+const WIDENED_PIXELS: f64 = 0.15;
 
 /// Settles a line in place and measures its widths anew.
 pub(super) fn relax(image: &LineImage, line: &mut Streamline, width: f64) {
@@ -17,28 +20,53 @@ pub(super) fn relax(image: &LineImage, line: &mut Streamline, width: f64) {
     if n < 5 {
         return;
     }
+    let span = ((0.5 * width / STEP) as usize).max(2);
     for _ in 0..ROUNDS {
-        let moved: Vec<(Vec2, f64)> = (0..n).map(|k| correction(image, line, k, width)).collect();
-        let shifts: Vec<Vec2> = moved.iter().map(|m| m.0).collect();
-        for (k, &(_, measured)) in moved.iter().enumerate() {
+        let normals: Vec<Vec2> = (0..n).map(|k| tangent(line, k, span).turn_90()).collect();
+        let profile = |k: usize| cross_profile(&image.ink, line.points[k], normals[k], 0.85 * width + 1.0);
+        let profiles: Vec<Option<Profile>> = (0..n).map(profile).collect();
+        let lateral = lateral(&profiles, width);
+        let limit = 0.3 * width;
+        let shifts: Vec<Vec2> =
+            normals.iter().zip(&lateral).map(|(normal, shift)| *normal * (0.7 * shift.clamp(-limit, limit))).collect();
+        for (k, profile) in profiles.iter().enumerate() {
             // The mean of neighbours' corrections: the middle of the ink is smoother than its pixels.
             line.points[k] += smoothed(&shifts, k, line.closed);
-            line.widths[k] = measured;
+            let single = profile.filter(|p| p.is_single(width));
+            line.widths[k] = single.and_then(|p| p.width()).unwrap_or(f64::NAN);
         }
     }
 }
 
-/// How a point should move, and the ink width there (NaN when the line is not alone).
-fn correction(image: &LineImage, line: &Streamline, k: usize, width: f64) -> (Vec2, f64) {
-    let span = ((0.5 * width / STEP) as usize).max(2);
-    let tangent = tangent(line, k, span);
-    let normal = tangent.turn_90();
-    let Some(profile) = cross_profile(&image.ink, line.points[k], normal, 0.85 * width + 1.0) else {
-        return (Vec2::ZERO, f64::NAN);
-    };
-    let measured = if profile.is_single(width) { profile.width().unwrap_or(f64::NAN) } else { f64::NAN };
-    let shift = profile.shift(width).unwrap_or(0.0).clamp(-0.3 * width, 0.3 * width);
-    (normal * (0.7 * shift), measured)
+/// How far each point is from the middle of the line's ink, along its normal.
+///
+/// Where another line runs in at a small angle, the ink widens to one side long before it is two lines' ink. There only
+/// the edge of the other side is the line's own: the one that runs on most evenly.
+fn lateral(profiles: &[Option<Profile>], width: f64) -> Vec<f64> {
+    let mut shifts: Vec<f64> = profiles.iter().map(|p| p.and_then(|p| p.shift(width)).unwrap_or(0.0)).collect();
+    let is_wide =
+        |p: &Option<Profile>| p.is_some_and(|p| p.width().is_none_or(|w| w > WIDENED * width + WIDENED_PIXELS));
+    let mut from = 0;
+    for run in profiles.chunk_by(|a, b| is_wide(a) == is_wide(b)) {
+        let to = from + run.len();
+        if is_wide(&run[0]) && run.len() as f64 * STEP > width {
+            let [left, right] = [Profile::shift_by_left, Profile::shift_by_right].map(|by| {
+                let shift = |p: &Option<Profile>| p.and_then(|p| by(&p, width));
+                let before = from.checked_sub(1).map(|k| shifts[k]);
+                let beyond = shifts.get(to).copied();
+                let all: Vec<Option<f64>> =
+                    before.map(Some).into_iter().chain(run.iter().map(shift)).chain(beyond.map(Some)).collect();
+                let steps = all.windows(2).map(|w| w[0].zip(w[1]).map_or(0.5 * width, |(a, b)| (b - a).abs()));
+                (steps.sum::<f64>(), run.iter().map(shift).collect::<Vec<_>>())
+            });
+            let (roughness, own) = if left.0 <= right.0 { left } else { right };
+            if roughness < width {
+                own.iter().zip(&mut shifts[from..to]).for_each(|(own, shift)| *shift = own.unwrap_or(*shift));
+            }
+        }
+        from = to;
+    }
+    shifts
 }
 
 /// Unit tangent from the points `span` before and after.

@@ -1,0 +1,288 @@
+//! Where a line that runs into another at a small angle leaves it.
+//!
+//! Long before two inks part, the edge of their union bulges: at a place `s` along the other line, the body, the outer
+//! edge lies at `max(w_body / 2, y(s) + w / 2)` from the body's middle, where `y` is how far the line of width `w` is from
+//! it. With `u = s - s0` after the place `s0` where they meet, `y = (u^2 + y^2) / 2R` for a circle that touches the body
+//! and `y = m u + c u^2 / 2` for a line that meets it at an angle. The `s0` that explains the edge best, in least squares,
+//! is the node; up to where the line is alone again, its middle is what was solved.
+
+use super::contacts::{LineIndex, Place, direction_at, width_at};
+use super::ends::{End, ends};
+use crate::clean::LineImage;
+use crate::streamline::{STEP, Stop, Streamline};
+use kurbo::{Point, Vec2};
+
+/// A body is looked for within this many line widths of an end, running along it within this cosine's angle (50 degrees).
+const NEAR: f64 = 1.2;
+const ALONG: f64 = 0.64;
+/// The edge is measured from this many line widths before the end's last point on the body, to that many after it.
+const BEFORE: f64 = 6.0;
+const AFTER: f64 = 8.0;
+/// The lines are compared up to a distance of this many line widths.
+const APART: f64 = 1.2;
+/// A line from this many line widths on shows its own middle.
+const ALONE: f64 = 0.7;
+/// A meeting at an angle has to explain the edge better than a touch by this factor.
+const ANGLE: f64 = 3.0;
+/// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
+const MISFIT: f64 = 0.06;
+const MISFIT_PIXELS: f64 = 0.15;
+/// The fewest places at which the edge must bulge.
+const FEWEST: usize = 6;
+
+/// Leads every end that runs into a body at a small angle to the place where it meets the body.
+pub(super) fn merge(image: &LineImage, lines: &mut [Streamline]) {
+    let index = LineIndex::new(lines);
+    let ends = ends(image, lines);
+    let open = ends.iter().flatten().filter(|end| !end.stop.is_cut_off() && end.stop != Stop::Settled);
+    let solved = |end: &End| Some((end.line, end.side, solve(image, lines, &index, end)?));
+    let solved: Vec<(usize, usize, Course)> = open.filter_map(solved).collect();
+    for (line, side, course) in solved {
+        course.apply(&mut lines[line], side);
+    }
+}
+
+/// The last points of a line, from the body on, and how many points of its own they replace.
+struct Course {
+    points: Vec<Point>,
+    replaced: usize,
+}
+
+impl Course {
+    fn apply(self, line: &mut Streamline, side: usize) {
+        if side == 1 {
+            line.points.reverse();
+            line.widths.reverse();
+        }
+        let count = self.points.len();
+        line.points.splice(..self.replaced, self.points);
+        line.widths.splice(..self.replaced, vec![f64::NAN; count]);
+        if side == 1 {
+            line.points.reverse();
+            line.widths.reverse();
+        }
+        line.stops[side] = Stop::Joined;
+    }
+}
+
+/// A place beside the body: how far along it, and how far away.
+#[derive(Clone, Copy)]
+struct Sample {
+    s: f64,
+    y: f64,
+}
+
+/// How a line leaves the body.
+#[derive(Clone, Copy, Debug)]
+struct Leave {
+    /// Where, along the body.
+    s0: f64,
+    slope: f64,
+    curvature: f64,
+    /// Sum of squares.
+    error: f64,
+}
+
+impl Leave {
+    /// Distance from the body at a place.
+    fn at(&self, s: f64) -> f64 {
+        let u = (s - self.s0).max(0.0);
+        if self.slope > 0.0 {
+            return self.slope * u + 0.5 * self.curvature * u * u;
+        }
+        // A circle, as far as it goes.
+        let k = self.curvature;
+        if k * u < 0.9 { k * u * u / (1.0 + (1.0 - k * k * u * u).sqrt()) } else { 0.5 * k * u * u }
+    }
+}
+
+fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Course> {
+    let lw = image.line_width;
+    let body = body(lines, index, end, NEAR * lw)?;
+    let frame = Frame::new(lines, body, end, lw)?;
+    let widths = [end.width, width_at(lines, body, lw)];
+    let own = frame.own(&lines[end.line], end.side, APART.max(ALONE) * lw + lw);
+    let edge = frame.edge(image, widths, APART * lw);
+    let bulging = edge.iter().filter(|e| e.y > 0.12 * lw.max(2.0)).count();
+    if bulging < FEWEST {
+        return None;
+    }
+    let alone = own.iter().position(|(sample, is_single)| *is_single && sample.y > ALONE * lw)?;
+    let far: Vec<Sample> = own[alone..].iter().map(|o| o.0).filter(|o| o.y < APART * lw).collect();
+    let samples: Vec<Sample> = edge.iter().chain(&far).copied().collect();
+    let leave = leave(&samples, 0.5 * (widths[1] - widths[0]))?;
+    let deviation = (leave.error / samples.len() as f64).sqrt();
+    if deviation > (MISFIT * lw).max(MISFIT_PIXELS) {
+        return None;
+    }
+    let last = own[alone].0.s;
+    let count = ((last - leave.s0) / STEP) as i64;
+    if count < 1 {
+        return None;
+    }
+    let at = |k: i64| leave.s0 + STEP * k as f64;
+    let points: Vec<Point> = (0..count).map(|k| frame.point(at(k), leave.at(at(k)))).collect::<Option<_>>()?;
+    Some(Course { points, replaced: alone })
+}
+
+/// The nearest line that an end runs along.
+fn body(lines: &[Streamline], index: &LineIndex, end: &End, radius: f64) -> Option<Place> {
+    let near = index.near(end.point, radius).into_iter().map(|(place, ..)| place);
+    let along = |place: &Place| {
+        let direction = direction_at(&lines[place.line], place.at as usize);
+        direction.dot(end.tail.heading).abs() > ALONG
+    };
+    near.filter(|place| place.line != end.line).find(along)
+}
+
+/// The body as an axis: `s` grows the way the line leaves it, `y` to the line's side.
+struct Frame<'a> {
+    body: &'a Streamline,
+    /// Index of the body's point at `s = 0`, and which way indices go.
+    origin: f64,
+    forward: f64,
+    side: f64,
+    /// Half of the stretch that is looked at, in pixels.
+    range: [f64; 2],
+}
+
+impl<'a> Frame<'a> {
+    fn new(lines: &'a [Streamline], place: Place, end: &End, line_width: f64) -> Option<Self> {
+        let body = &lines[place.line];
+        let along = direction_at(body, place.at as usize);
+        let forward = -along.dot(end.tail.heading).signum();
+        let n = lines[end.line].points.len();
+        let inner = ((4.0 * line_width / STEP) as usize).min(n - 1);
+        let inside = lines[end.line].points[if end.side == 0 { inner } else { n - 1 - inner }];
+        let mut frame =
+            Self { body, origin: place.at, forward, side: 1.0, range: [BEFORE * line_width, AFTER * line_width] };
+        // The side is that of the line before it comes near.
+        let (_, y) = frame.locate(inside)?;
+        frame.side = y.signum();
+        Some(frame)
+    }
+
+    /// Index of the body's point at a distance along it; `None` beyond its ends.
+    fn index(&self, s: f64) -> Option<usize> {
+        let n = self.body.points.len() as i64;
+        let k = (self.origin + self.forward * s / STEP).round() as i64;
+        let k = if self.body.closed { k.rem_euclid(n) } else { k };
+        (0..n).contains(&k).then_some(k as usize)
+    }
+
+    fn normal(&self, k: usize) -> Vec2 {
+        direction_at(self.body, k).turn_90() * (self.side * self.forward)
+    }
+
+    /// The point at a distance along the body and away from it.
+    fn point(&self, s: f64, y: f64) -> Option<Point> {
+        let k = self.index(s)?;
+        Some(self.body.points[k] + self.normal(k) * y)
+    }
+
+    /// Where a point lies beside the body.
+    fn locate(&self, p: Point) -> Option<(f64, f64)> {
+        let count = |pixels: f64| (pixels / STEP) as i64;
+        let places = (-count(self.range[0])..=count(self.range[1])).map(|i| STEP * i as f64);
+        let known = places.filter_map(|s| Some((s, self.index(s)?)));
+        let (s, k) = known.min_by(|a, b| {
+            let d = |k: usize| (self.body.points[k] - p).hypot2();
+            d(a.1).total_cmp(&d(b.1))
+        })?;
+        Some((s, (p - self.body.points[k]).dot(self.normal(k))))
+    }
+
+    /// The line's own points from its end on, up to a distance from the body, and whether each is alone.
+    fn own(&self, line: &Streamline, side: usize, reach: f64) -> Vec<(Sample, bool)> {
+        let n = line.points.len();
+        let index = |k: usize| if side == 0 { k } else { n - 1 - k };
+        let own = (0..n).map_while(|k| {
+            let (s, y) = self.locate(line.points[index(k)])?;
+            (y < reach).then_some((Sample { s, y }, line.widths[index(k)].is_finite()))
+        });
+        own.take((4.0 * self.range[1] / STEP) as usize).collect()
+    }
+
+    /// How far the line's middle must be from the body's for the edge of their ink to lie where it does.
+    fn edge(&self, image: &LineImage, widths: [f64; 2], apart: f64) -> Vec<Sample> {
+        let [own, body] = widths;
+        let count = |pixels: f64| (pixels / STEP) as i64;
+        let mut samples = Vec::new();
+        for i in -count(self.range[0])..=count(self.range[1]) {
+            let s = STEP * i as f64;
+            let Some(k) = self.index(s) else { continue };
+            let Some(edge) = edge(image, self.body.points[k], self.normal(k), 0.5 * own + apart) else { break };
+            let y = edge - 0.5 * own;
+            // Paper has come between: what was measured is the body's own edge again.
+            if s > 0.0 && samples.last().is_some_and(|l: &Sample| l.y - y > 0.3 * own) {
+                break;
+            }
+            // Before the end, another line leaves on the same side.
+            if s < 0.0 && edge > 0.5 * body + 0.3 * own {
+                samples.clear();
+                continue;
+            }
+            samples.push(Sample { s, y });
+        }
+        samples
+    }
+}
+
+/// Distance from a point in the ink to its edge, up to `reach`.
+fn edge(image: &LineImage, p: Point, normal: Vec2, reach: f64) -> Option<f64> {
+    const SPACING: f64 = 0.25;
+    let at = |k: usize| image.ink.sample(p + normal * (SPACING * k as f64));
+    let half = 0.5 * at(0).min(1.0);
+    if half < 0.15 {
+        return None;
+    }
+    let k = (1..=(reach / SPACING) as usize).find(|&k| at(k) < half)?;
+    let (inside, outside) = (at(k - 1), at(k));
+    Some(SPACING * (k as f64 - 1.0 + f64::from((inside - half) / (inside - outside))))
+}
+
+/// The best explanation of the samples; `rest` is what `y` measures where only the body is.
+fn leave(samples: &[Sample], rest: f64) -> Option<Leave> {
+    let (first, last) = (samples.first()?.s, samples.iter().map(|s| s.s).fold(f64::MIN, f64::max));
+    let count = ((last - first) / STEP) as i64 - 3;
+    let starts = (2..count).map(|k| first + STEP * k as f64);
+    let both: Vec<[Option<Leave>; 2]> = starts.map(|s0| [touch(samples, s0, rest), angle(samples, s0, rest)]).collect();
+    let best = |which: usize| both.iter().filter_map(|l| l[which]).min_by(|a, b| a.error.total_cmp(&b.error));
+    match (best(0), best(1)) {
+        (Some(touch), Some(angle)) if angle.error * ANGLE < touch.error => Some(angle),
+        (touch, angle) => touch.or(angle),
+    }
+}
+
+/// A circle that touches the body at `s0`.
+fn touch(samples: &[Sample], s0: f64, rest: f64) -> Option<Leave> {
+    let (mut qq, mut qy) = (0.0, 0.0);
+    let q = |p: &Sample| 0.5 * ((p.s - s0).powi(2) + p.y * p.y);
+    for p in samples.iter().filter(|p| p.s > s0) {
+        // Near the far end, y must not fit itself.
+        (qq, qy) = (qq + q(p) * q(p), qy + q(p) * p.y);
+    }
+    let curvature = qy / qq;
+    (curvature > 0.0).then(|| with_error(samples, rest, Leave { s0, slope: 0.0, curvature, error: 0.0 }))
+}
+
+/// A line that meets the body at `s0` at an angle.
+fn angle(samples: &[Sample], s0: f64, rest: f64) -> Option<Leave> {
+    let (mut uu, mut uq, mut qq, mut uy, mut qy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for p in samples.iter().filter(|p| p.s > s0) {
+        let u = p.s - s0;
+        let q = 0.5 * u * u;
+        (uu, uq, qq, uy, qy) = (uu + u * u, uq + u * q, qq + q * q, uy + u * p.y, qy + q * p.y);
+    }
+    let det = uu * qq - uq * uq;
+    if det < 1e-9 {
+        return None;
+    }
+    let (slope, curvature) = ((uy * qq - qy * uq) / det, (qy * uu - uy * uq) / det);
+    (slope > 0.0).then(|| with_error(samples, rest, Leave { s0, slope, curvature, error: 0.0 }))
+}
+
+fn with_error(samples: &[Sample], rest: f64, leave: Leave) -> Leave {
+    let off = |p: &Sample| p.y - if p.s > leave.s0 { leave.at(p.s).max(rest) } else { rest };
+    Leave { error: samples.iter().map(|p| off(p).powi(2)).sum(), ..leave }
+}
