@@ -183,11 +183,25 @@ impl Finder<'_> {
         if end.stop.is_cut_off() || end.stop == Stop::Settled {
             return Vec::new();
         }
+        if end.stop == Stop::Joined {
+            return self.joined(end).into_iter().collect();
+        }
         let mut contacts = self.crossed(end);
         if contacts.is_empty() {
             contacts.extend(self.beside(end));
         }
         contacts
+    }
+
+    /// The line on which an end lies.
+    fn joined(&self, end: &End) -> Option<Contact> {
+        let near = self.index.near(end.point, STEP);
+        let (place, point, misfit) = near.into_iter().find(|(place, ..)| place.line != end.line)?;
+        let touch = match self.end_near(place, 0.8 * self.image.line_width) {
+            Some(other) => Touch::End(other),
+            None => Touch::Body(place),
+        };
+        Some(Contact { end: end_id(end.line, end.side), touch, point, misfit })
     }
 
     /// Lines that the end's last stretch, or its straight continuation through ink, crosses.

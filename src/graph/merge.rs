@@ -27,6 +27,8 @@ const ANGLE: f64 = 3.0;
 /// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
 const MISFIT: f64 = 0.06;
 const MISFIT_PIXELS: f64 = 0.15;
+/// An edge that turns back by this share of the line's width is another's.
+const JUMP: f64 = 0.3;
 /// The fewest places at which the edge must bulge.
 const FEWEST: usize = 6;
 
@@ -102,7 +104,7 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
     let frame = Frame::new(lines, body, end, lw)?;
     let widths = [end.width, width_at(lines, body, lw)];
     let own = frame.own(&lines[end.line], end.side, APART.max(ALONE) * lw + lw);
-    let edge = frame.edge(image, widths, APART * lw);
+    let edge = frame.edge(image, widths[0], APART * lw);
     let bulging = edge.iter().filter(|e| e.y > 0.12 * lw.max(2.0)).count();
     if bulging < FEWEST {
         return None;
@@ -204,26 +206,29 @@ impl<'a> Frame<'a> {
     }
 
     /// How far the line's middle must be from the body's for the edge of their ink to lie where it does.
-    fn edge(&self, image: &LineImage, widths: [f64; 2], apart: f64) -> Vec<Sample> {
-        let [own, body] = widths;
-        let count = |pixels: f64| (pixels / STEP) as i64;
-        let mut samples = Vec::new();
-        for i in -count(self.range[0])..=count(self.range[1]) {
+    ///
+    /// Before the end the edge comes down to the body's own, until another line leaves; after it, it goes up until there
+    /// is paper between the two lines.
+    fn edge(&self, image: &LineImage, own: f64, apart: f64) -> Vec<Sample> {
+        let at = |i: i64| {
             let s = STEP * i as f64;
-            let Some(k) = self.index(s) else { continue };
-            let Some(edge) = edge(image, self.body.points[k], self.normal(k), 0.5 * own + apart) else { break };
-            let y = edge - 0.5 * own;
-            // Paper has come between: what was measured is the body's own edge again.
-            if s > 0.0 && samples.last().is_some_and(|l: &Sample| l.y - y > 0.3 * own) {
-                break;
-            }
-            // Before the end, another line leaves on the same side.
-            if s < 0.0 && edge > 0.5 * body + 0.3 * own {
-                samples.clear();
-                continue;
-            }
-            samples.push(Sample { s, y });
-        }
+            let k = self.index(s)?;
+            let edge = edge(image, self.body.points[k], self.normal(k), 0.5 * own + apart)?;
+            Some(Sample { s, y: edge - 0.5 * own })
+        };
+        let count = self.range.map(|pixels| (pixels / STEP) as i64);
+        let mut lowest = f64::MAX;
+        let before = (0..=count[0]).map_while(|i| at(-i)).take_while(|sample| {
+            lowest = lowest.min(sample.y);
+            sample.y < lowest + JUMP * own
+        });
+        let mut samples: Vec<Sample> = before.collect();
+        samples.reverse();
+        let mut highest = f64::MIN;
+        samples.extend((1..=count[1]).map_while(at).take_while(|sample| {
+            highest = highest.max(sample.y);
+            sample.y > highest - JUMP * own
+        }));
         samples
     }
 }
