@@ -23,9 +23,9 @@ const APART: f64 = 1.2;
 /// A line from this many line widths on shows its own middle.
 const ALONE: f64 = 0.7;
 /// A meeting at an angle has to explain the edge better than a touch by this factor.
-const ANGLE: f64 = 3.0;
+const ANGLE: f64 = 2.5;
 /// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
-const MISFIT: f64 = 0.06;
+const MISFIT: f64 = 0.1;
 const MISFIT_PIXELS: f64 = 0.15;
 /// An edge that turns back by this share of the line's width is another's.
 const JUMP: f64 = 0.3;
