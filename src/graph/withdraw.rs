@@ -8,6 +8,7 @@ use super::ends::{End, ends};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};
+use rayon::prelude::*;
 
 /// The middle of a gap is looked for up to this many line widths and pixels before a crossed line's edge.
 const BEFORE: f64 = 0.1;
@@ -26,9 +27,8 @@ pub(super) fn withdraw(image: &LineImage, lines: &mut [Streamline]) {
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
     let cuts: Vec<(usize, usize, usize)> = ends
-        .iter()
-        .flatten()
-        .filter(|end| !end.stop.is_cut_off())
+        .par_iter()
+        .filter_map(|end| end.as_ref().filter(|end| !end.stop.is_cut_off()))
         .filter_map(|end| Some((end.line, end.side, gap(image, lines, &index, end)?)))
         .collect();
     for (line, side, count) in cuts {
