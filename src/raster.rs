@@ -2,8 +2,11 @@
 //!
 //! Pixel `(x, y)` covers `[x, x + 1) x [y, y + 1)`, so the centre of the first pixel is `(0.5, 0.5)`.
 
-use image::{GrayImage, ImageBuffer, Luma};
+use bytemuck::{Zeroable, zeroed_vec};
+use image::{GrayImage, ImageBuffer, Luma, Pixel};
 use kurbo::Point;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// A `width x height` grid, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +31,16 @@ impl<T: Copy> Raster<T> {
         for y in 0..height {
             data.extend((0..width).map(|x| f(x, y)));
         }
+        Self { width, height, data }
+    }
+
+    /// A grid whose rows are computed on all cores: `fill(y, row)` writes a row that holds `blank`.
+    pub(crate) fn from_rows(width: usize, height: usize, blank: T, fill: impl Fn(usize, &mut [T]) + Sync) -> Self
+    where
+        T: Send,
+    {
+        let mut data = vec![blank; width * height];
+        data.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| fill(y, row));
         Self { width, height, data }
     }
 
@@ -66,6 +79,14 @@ impl<T: Copy> Raster<T> {
         &self.data[y * self.width..(y + 1) * self.width]
     }
 
+    /// A grid of zeros, whose memory is not touched before something is written to it.
+    pub(crate) fn zeroed(width: usize, height: usize) -> Self
+    where
+        T: Zeroable,
+    {
+        Self { width, height, data: zeroed_vec(width * height) }
+    }
+
     /// The sample at a pixel, or `None` outside the grid.
     pub fn get(&self, x: i64, y: i64) -> Option<T> {
         let inside = x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height;
@@ -74,12 +95,22 @@ impl<T: Copy> Raster<T> {
 
     /// The sample of the pixel that contains a point, or `None` outside the grid.
     pub fn at(&self, p: Point) -> Option<T> {
-        self.get(p.x.floor() as i64, p.y.floor() as i64)
+        self.get(floor(p.x), floor(p.y))
     }
 
     /// A grid of the same size with each sample mapped.
     pub fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Raster<U> {
         Raster { width: self.width, height: self.height, data: self.data.iter().copied().map(f).collect() }
+    }
+
+    /// The same on all cores, over samples that hold `blank` at first.
+    pub(crate) fn mapped<U: Copy + Send>(&self, blank: U, f: impl Fn(T) -> U + Sync) -> Raster<U>
+    where
+        T: Sync,
+    {
+        Raster::from_rows(self.width, self.height, blank, |y, row| {
+            row.iter_mut().zip(self.row(y)).for_each(|(to, &from)| *to = f(from));
+        })
     }
 }
 
@@ -98,6 +129,16 @@ impl<T> std::ops::IndexMut<(usize, usize)> for Raster<T> {
     }
 }
 
+impl<T> Raster<T>
+where
+    Luma<T>: Pixel<Subpixel = T>,
+{
+    /// The grid as an `image` buffer, without copying.
+    pub fn into_image(self) -> ImageBuffer<Luma<T>, Vec<T>> {
+        ImageBuffer::from_raw(self.width as u32, self.height as u32, self.data).expect("length is width * height")
+    }
+}
+
 impl Raster<f32> {
     /// Bilinear interpolation between pixel centres; samples outside the grid count as 0.
     pub fn sample(&self, p: Point) -> f32 {
@@ -112,17 +153,11 @@ impl Raster<f32> {
             let top = a + (b - a) * tx;
             return top + (c + (d - c) * tx - top) * ty;
         }
-        let (x, y) = (fx.floor(), fy.floor());
-        let (tx, ty) = ((fx - x) as f32, (fy - y) as f32);
-        let (x, y) = (x as i64, y as i64);
+        let (x, y) = (floor(fx), floor(fy));
+        let (tx, ty) = ((fx - x as f64) as f32, (fy - y as f64) as f32);
         let v = |x, y| self.get(x, y).unwrap_or(0.0);
         let top = v(x, y) * (1.0 - tx) + v(x + 1, y) * tx;
         top * (1.0 - ty) + (v(x, y + 1) * (1.0 - tx) + v(x + 1, y + 1) * tx) * ty
-    }
-
-    /// The grid as an `image` buffer, without copying.
-    pub fn into_image(self) -> ImageBuffer<Luma<f32>, Vec<f32>> {
-        ImageBuffer::from_raw(self.width as u32, self.height as u32, self.data).expect("length is width * height")
     }
 
     /// An `image` buffer as a grid, without copying.
@@ -135,15 +170,30 @@ impl Raster<f32> {
 impl Mask {
     /// The mask as a grey image: ink 255, paper 0.
     pub fn to_gray_image(&self) -> GrayImage {
-        GrayImage::from_fn(self.width as u32, self.height as u32, |x, y| {
-            Luma([if self[(x as usize, y as usize)] { 255 } else { 0 }])
-        })
+        self.mapped(0, |ink| if ink { 255 } else { 0 }).into_image()
     }
 
     /// Number of ink pixels.
     pub fn count(&self) -> usize {
         self.data.iter().filter(|&&ink| ink).count()
     }
+}
+
+/// The greatest whole number that is not above; without the call that rounding down costs where the processor is not
+/// known to have an instruction for it.
+pub(crate) fn floor(v: f64) -> i64 {
+    let cut = v as i64;
+    cut.saturating_sub(i64::from(v < cut as f64))
+}
+
+/// The runs of set pixels in a row, from left to right.
+pub(crate) fn runs(row: &[bool]) -> impl Iterator<Item = Range<usize>> {
+    let mut x = 0;
+    std::iter::from_fn(move || {
+        let start = x + row[x..].iter().position(|&set| set)?;
+        x = row[start..].iter().position(|&set| !set).map_or(row.len(), |n| start + n);
+        Some(start..x)
+    })
 }
 
 #[cfg(test)]

@@ -104,6 +104,7 @@ pub(crate) fn unblurred_width(measured: f64, blur: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::width::{line_width, ridge_widths};
     use super::*;
 
     #[test]
@@ -129,8 +130,8 @@ mod tests {
                 profile_at(d, width, blur) as f32
             });
             let mask = ink.map(|i| i > 0.5 * profile_at(0.0, width, blur) as f32);
-            let depth = super::super::depth(&mask);
-            let measured = super::super::width::line_width(&ink, &mask, &depth);
+            let depth = super::super::distance::distance(&mask);
+            let measured = line_width(&ridge_widths(&ink, &mask, &depth));
             let found = estimate(&ink, &mask, &depth, measured);
             let restored = unblurred_width(measured, found);
             assert!((restored - width).abs() < 0.25, "{width} {blur}: {found} {restored}");

@@ -2,14 +2,17 @@
 
 mod blur;
 mod colors;
+mod distance;
 mod paper;
 mod resample;
+mod runs;
 mod solids;
 mod specks;
 mod threshold;
 mod width;
 
 pub(crate) use blur::unblurred_width;
+pub(crate) use runs::runs;
 pub(crate) use threshold::LEAST_GRAIN;
 pub(crate) use width::is_ridge;
 
@@ -19,10 +22,11 @@ use crate::error::Result;
 use crate::load::Scan;
 use crate::options::{Invert, Options, Threshold};
 use crate::raster::{Mask, Raster};
-use image::{ImageBuffer, Luma};
-use imageproc::distance_transform::euclidean_squared_distance_transform;
+use distance::distance;
 use imageproc::filter::gaussian_blur_f32;
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// The ink of a drawing, evenly lit and at a size that the later stages know.
@@ -73,7 +77,8 @@ impl LineImage {
         let along = (0..=count).map(|k| a.lerp(b, k as f64 / count as f64));
         if self.noise > 0.0 {
             let heading = if length > 1e-9 { (b - a) / length } else { return true };
-            return along.map(|p| self.gap(p, heading, core)).fold(0.0, f64::max) <= NOISY_GAP;
+            let profile = GapProfile::of(self);
+            return !along.map(|p| profile.gap(self, p, heading, core)).any(|gap| gap > NOISY_GAP);
         }
         let missing: f64 = along.map(|p| (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0)).sum();
         missing * length / count as f64 <= CLEAN_GAP * self.scale.max(1.0)
@@ -87,23 +92,34 @@ impl LineImage {
         let step = heading.turn_90() * (0.5 * CORE_BAND * self.line_width);
         (-2..=2).map(|k| self.ink.sample(p + step * f64::from(k))).sum::<f32>() / 5.0
     }
+}
+
+/// The ink that a gap of unit length lacks along a line, once the scan has blurred it.
+struct GapProfile {
+    /// Distance from the gap's middle in pixels, and the share that is missing there.
+    samples: Vec<(f64, f64)>,
+    /// Sum of the squared shares.
+    whole: f64,
+}
+
+impl GapProfile {
+    fn of(image: &LineImage) -> Self {
+        let deviation = image.blur.max(0.7);
+        let spacing = 0.25;
+        let reach = (2.0 * deviation / spacing).ceil() as i32;
+        let missing = |offset: f64| (-0.5 * (offset / deviation).powi(2)).exp() / (deviation * TAU.sqrt());
+        let samples = (-reach..=reach).map(|k| spacing * f64::from(k)).map(|offset| (offset, missing(offset)));
+        let samples: Vec<(f64, f64)> = samples.collect();
+        let whole = samples.iter().map(|(_, missing)| missing * missing).sum();
+        Self { samples, whole }
+    }
 
     /// Length of the gap at a point of a noisy line, in pixels: the least squares size of a gap that the scan has
     /// blurred.
-    pub(crate) fn gap(&self, p: Point, heading: Vec2, core: f32) -> f64 {
-        let deviation = self.blur.max(0.7);
-        let spacing = 0.25;
-        let reach = (2.0 * deviation / spacing).ceil() as i32;
-        let (mut seen, mut whole) = (0.0, 0.0);
-        for k in -reach..=reach {
-            let offset = spacing * f64::from(k);
-            // The profile of a blurred gap of unit length.
-            let profile = (-0.5 * (offset / deviation).powi(2)).exp() / (deviation * TAU.sqrt());
-            let missing = 1.0 - f64::from(self.core(p + heading * offset, heading) / core);
-            seen += profile * missing;
-            whole += profile * profile;
-        }
-        seen / whole
+    fn gap(&self, image: &LineImage, p: Point, heading: Vec2, core: f32) -> f64 {
+        let missing = |offset: f64| 1.0 - f64::from(image.core(p + heading * offset, heading) / core);
+        let seen: f64 = self.samples.iter().map(|&(offset, share)| share * missing(offset)).sum();
+        seen / self.whole
     }
 }
 
@@ -141,41 +157,41 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
             threshold::binarise(joined(ink, noise), noise, options.threshold, false)
         }
     };
-    let mut depth = depth(&mask);
+    let mut depth = distance(&mask);
     cancel.check()?;
-    let mut line_width = width::line_width(&ink, &mask, &depth);
-    let scale = resample::scale_for(&ink, &mask, &depth, line_width);
+    let widths = width::ridge_widths(&ink, &mask, &depth);
+    let mut line_width = width::line_width(&widths);
+    let scale = resample::scale_for(mask.size(), &widths, line_width);
     if scale != 1.0 {
         ink = resample::resize(ink, scale);
         cancel.check()?;
-        mask = ink.map(|i| i > threshold::level(noise));
-        depth = self::depth(&mask);
+        mask = ink.mapped(false, |i| i > threshold::level(noise));
+        depth = distance(&mask);
         cancel.check()?;
-        line_width = width::line_width(&ink, &mask, &depth);
+        line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
     }
     cancel.check()?;
     specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
     cancel.check()?;
     let solids = solids::take(&mut mask, &ink, &depth, line_width);
-    let depth = if solids.is_empty() { depth } else { self::depth(&mask) };
+    let depth = if solids.is_empty() { depth } else { distance(&mask) };
     cancel.check()?;
     let blur = match noise > 0.0 {
         true => blur::estimate(&ink, &mask, &depth, line_width),
         false if scale > 1.0 => resample::SOFTENING,
         false => 0.0,
     };
-    let ink = ink.map(|i| i.min(DARKEST));
+    ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let colors = page.map(|page| page.colors);
     Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, colors })
 }
 
 /// Ink by the light that the paper's level has lost.
 fn ink_of_gray(gray: &Raster<f32>, inverted: bool) -> Raster<f32> {
-    let light = match inverted {
-        _ if !has_contrast(gray) => gray.map(|_| 1.0),
-        true => gray.map(|g| 1.0 - g),
-        false => gray.clone(),
-    };
+    if !has_contrast(gray) {
+        return Raster::filled(gray.width(), gray.height(), 0.0);
+    }
+    let light = if inverted { Cow::Owned(gray.mapped(0.0, |g| 1.0 - g)) } else { Cow::Borrowed(gray) };
     paper::divide(&light, &paper::paper_level(&light))
 }
 
@@ -216,7 +232,8 @@ fn inks_of_groups(page: &colors::ColorPage, noise: f64, threshold: Threshold) ->
 
 /// Whether there is anything on the page: a scan of one tone has no ink, whatever the tone.
 fn has_contrast(gray: &Raster<f32>) -> bool {
-    let (low, high) = gray.data().iter().fold((f32::MAX, f32::MIN), |(a, b), &g| (a.min(g), b.max(g)));
+    let low = gray.data().par_iter().copied().reduce(|| f32::MAX, f32::min);
+    let high = gray.data().par_iter().copied().reduce(|| f32::MIN, f32::max);
     high - low > LEAST_CONTRAST
 }
 
@@ -231,22 +248,6 @@ fn is_light_on_dark(gray: &Raster<f32>) -> bool {
     let (low, middle, high) = (at(0.002), at(0.5), at(0.998));
     // A photographed page may be dim; only a page near the dark end of its own range, and dark, is inverted.
     middle < 0.5 && middle - low < 0.4 * (high - low)
-}
-
-/// Distance of each mask pixel's centre to the nearest paper pixel's centre; 0 on paper.
-///
-/// The outside of the image counts as ink, so a line that leaves the image keeps its width.
-fn depth(mask: &Mask) -> Raster<f32> {
-    let (width, height) = mask.size();
-    if mask.count() == width * height {
-        return Raster::filled(width, height, width.max(height) as f32);
-    }
-    let paper = ImageBuffer::from_fn(width as u32, height as u32, |x, y| {
-        Luma([if mask[(x as usize, y as usize)] { 0u8 } else { 255 }])
-    });
-    let squared = euclidean_squared_distance_transform(&paper);
-    Raster::from_vec(width, height, squared.into_raw().into_iter().map(|d| d.sqrt() as f32).collect())
-        .expect("the transform keeps the size")
 }
 
 /// Gaussian blur.

@@ -14,7 +14,12 @@ pub(super) struct Paper(Raster<f32>);
 /// Measures the paper: an upper quantile per cell, solid regions bridged, smoothed.
 pub(super) fn paper_level(light: &Raster<f32>) -> Paper {
     let (columns, rows) = (light.width().div_ceil(CELL), light.height().div_ceil(CELL));
-    let cells = Raster::from_fn(columns, rows, |cx, cy| cell_quantile(light, cx * CELL, cy * CELL));
+    let cells = Raster::from_rows(columns, rows, 0.0, |cy, row| {
+        let mut values = Vec::new();
+        row.iter_mut()
+            .enumerate()
+            .for_each(|(cx, cell)| *cell = cell_quantile(light, cx * CELL, cy * CELL, &mut values));
+    });
     let mut sorted = cells.data().to_vec();
     sorted.sort_by(f32::total_cmp);
     let lightest = sorted[(sorted.len() - 1) * 9 / 10].max(1e-3);
@@ -28,14 +33,19 @@ pub(super) fn paper_level(light: &Raster<f32>) -> Paper {
     Paper(Raster::from_fn(columns, rows, |x, y| weighted[(x, y)] / weight[(x, y)]))
 }
 
-/// Upper quantile of one cell, taken over twice the cell so that neighbours agree.
-fn cell_quantile(light: &Raster<f32>, x0: usize, y0: usize) -> f32 {
+/// Upper quantile of one cell, taken over twice the cell so that neighbours agree. `values` is room to work in.
+fn cell_quantile(light: &Raster<f32>, x0: usize, y0: usize, values: &mut Vec<f32>) -> f32 {
     let half = CELL / 2;
     let (left, right) = (x0.saturating_sub(half), (x0 + CELL + half).min(light.width()));
     let (top, bottom) = (y0.saturating_sub(half), (y0 + CELL + half).min(light.height()));
-    let mut values: Vec<f32> =
-        (top..bottom).step_by(2).flat_map(|y| light.row(y)[left..right].iter().step_by(2).copied()).collect();
+    values.clear();
+    values.extend((top..bottom).step_by(2).flat_map(|y| light.row(y)[left..right].iter().step_by(2).copied()));
     let k = (values.len() - 1) * 4 / 5;
+    // On a clean page the lightest value is nearly all there is.
+    let lightest = values.iter().copied().fold(f32::MIN, f32::max);
+    if values.iter().filter(|&&v| v == lightest).count() >= values.len() - k {
+        return lightest;
+    }
     *values.select_nth_unstable_by(k, f32::total_cmp).1
 }
 
@@ -45,15 +55,33 @@ pub(super) fn divide(light: &Raster<f32>, paper: &Paper) -> Raster<f32> {
     let spread = |v: &[f32]| v.iter().fold((f32::MAX, f32::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     let (low, high) = spread(grid.data());
     if high - low < 2.0 / 255.0 {
-        return light.map(|g| (1.0 - g / high.max(1e-3)).clamp(0.0, 1.0));
+        let level = high.max(1e-3);
+        return light.mapped(0.0, |g| (1.0 - g / level).clamp(0.0, 1.0));
     }
-    let last = ((grid.width() - 1) as f32, (grid.height() - 1) as f32);
-    let cell = |pixel: usize, last: f32| ((pixel as f32 + 0.5) / CELL as f32 - 0.5).clamp(0.0, last);
-    Raster::from_fn(light.width(), light.height(), |x, y| {
-        let (fx, fy) = (cell(x, last.0), cell(y, last.1));
-        let level = grid.sample(kurbo::Point::new(f64::from(fx) + 0.5, f64::from(fy) + 0.5));
-        (1.0 - light[(x, y)] / level.max(1e-3)).clamp(0.0, 1.0)
+    // Bilinear: along the rows of the grid first.
+    let rows = Raster::from_rows(light.width(), grid.height(), 0.0, |cell, row| {
+        for (x, level) in row.iter_mut().enumerate() {
+            let (i, next, t) = between(x, grid.width());
+            *level = mix(grid[(i, cell)], grid[(next, cell)], t);
+        }
+    });
+    Raster::from_rows(light.width(), light.height(), 0.0, |y, row| {
+        let (i, next, t) = between(y, grid.height());
+        for ((ink, &g), (&a, &b)) in row.iter_mut().zip(light.row(y)).zip(rows.row(i).iter().zip(rows.row(next))) {
+            *ink = (1.0 - g / mix(a, b, t).max(1e-3)).clamp(0.0, 1.0);
+        }
     })
+}
+
+/// The cells before and after a pixel's centre, of so many, and how far it lies between their centres.
+fn between(pixel: usize, cells: usize) -> (usize, usize, f32) {
+    let place = ((pixel as f32 + 0.5) / CELL as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
+    let cell = place as usize;
+    (cell, (cell + 1).min(cells - 1), place - cell as f32)
+}
+
+fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
 }
 
 #[cfg(test)]

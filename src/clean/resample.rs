@@ -1,8 +1,7 @@
 //! Very thick and very thin drawings are brought to a width that the later stages know.
 
 use super::smooth;
-use super::width::ridge_widths;
-use crate::raster::{Mask, Raster};
+use crate::raster::Raster;
 use image::imageops::{FilterType, resize as resize_image};
 
 /// Lines wider than this many pixels carry no more detail for it: they are traced at half this width.
@@ -12,13 +11,11 @@ const THIN: f64 = 2.4;
 /// The largest raster that is enlarged, in pixels.
 const ENLARGE_LIMIT: usize = 30_000_000;
 
-/// The factor by which to resample a drawing; 1 for most.
-pub(super) fn scale_for(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line_width: f64) -> f64 {
-    let (width, height) = mask.size();
+/// The factor by which to resample a drawing of a size, from the sorted widths of its lines; 1 for most.
+pub(super) fn scale_for((width, height): (usize, usize), widths: &[f64], line_width: f64) -> f64 {
     if line_width < THIN && 4 * width * height <= ENLARGE_LIMIT {
         return 2.0;
     }
-    let widths = ridge_widths(ink, mask, depth);
     let Some(&thin) = widths.get(widths.len() / 10) else { return 1.0 };
     // A fine line among thick ones keeps at least four pixels.
     let scale = (0.5 * THICK / line_width).max(4.0 / thin).min(1.0);

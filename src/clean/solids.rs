@@ -1,10 +1,10 @@
 //! Regions far wider than the lines are kept as filled outlines.
 
+use super::distance::distance;
 use crate::drawing::{Color, Fill};
 use crate::raster::{Mask, Raster};
 use contour::ContourBuilder;
 use image::Luma;
-use imageproc::distance_transform::euclidean_squared_distance_transform;
 use imageproc::region_labelling::{Connectivity, connected_components};
 use kurbo::{BezPath, Point};
 
@@ -56,13 +56,11 @@ fn bounding_boxes(labels: &Labels, count: usize) -> Vec<[usize; 4]> {
 
 /// Morphological opening of the mask by a disc, grown back a little so that no rim stays behind.
 fn opened(mask: &Mask, depth: &Raster<f32>, radius: f64) -> Mask {
-    let core = image::GrayImage::from_fn(mask.width() as u32, mask.height() as u32, |x, y| {
-        Luma([if f64::from(depth[(x as usize, y as usize)]) > radius { 255 } else { 0 }])
-    });
-    let distance = euclidean_squared_distance_transform(&core);
-    let reach = (radius + 1.5) * (radius + 1.5);
-    Raster::from_fn(mask.width(), mask.height(), |x, y| {
-        mask[(x, y)] && distance.get_pixel(x as u32, y as u32)[0] <= reach
+    let to_core = distance(&depth.mapped(false, |d| f64::from(d) <= radius));
+    let reach = radius + 1.5;
+    Raster::from_rows(mask.width(), mask.height(), false, |y, row| {
+        let pixels = row.iter_mut().zip(mask.row(y)).zip(to_core.row(y));
+        pixels.for_each(|((opened, &inked), &d)| *opened = inked && f64::from(d) <= reach);
     })
 }
 
@@ -146,7 +144,7 @@ mod tests {
             disc.max(line) as f32
         });
         let mut mask = ink.map(|i| i > 0.5);
-        let depth = super::super::depth(&mask);
+        let depth = distance(&mask);
         let fills = take(&mut mask, &ink, &depth, 3.0);
         assert_eq!(fills.len(), 1);
         let area = fills[0].outline.area().abs();

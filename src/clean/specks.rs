@@ -1,7 +1,7 @@
 //! Specks of dust and grain are not ink.
 
+use super::runs::runs;
 use crate::raster::{Mask, Raster};
-use imageproc::region_labelling::{Connectivity, connected_components};
 use std::f64::consts::FRAC_PI_4;
 
 /// Removes specks from the mask, and their ink with them.
@@ -14,15 +14,13 @@ pub(super) fn remove(mask: &mut Mask, ink: &mut Raster<f32>, line_width: f64, no
     if limit < 1.0 {
         return;
     }
-    let labels = connected_components(&mask.to_gray_image(), Connectivity::Eight, image::Luma([0u8]));
-    let count = labels.iter().copied().max().unwrap_or(0) as usize + 1;
-    let mut area = vec![0usize; count];
-    labels.iter().for_each(|&label| area[label as usize] += 1);
-    let pixels = labels.iter().zip(mask.data_mut()).zip(ink.data_mut());
-    for ((&label, mask), ink) in pixels {
-        if *mask && area[label as usize] as f64 <= limit {
-            *mask = false;
-            *ink = 0.0;
-        }
+    let runs = runs(mask);
+    let mut area = vec![0usize; runs.len()];
+    runs.iter().for_each(|run| area[run.region] += run.to - run.from);
+    let width = mask.width();
+    for run in runs.iter().filter(|run| area[run.region] as f64 <= limit) {
+        let pixels = run.y * width + run.from..run.y * width + run.to;
+        mask.data_mut()[pixels.clone()].fill(false);
+        ink.data_mut()[pixels].fill(0.0);
     }
 }

@@ -3,10 +3,11 @@
 use super::smooth;
 use crate::options::Threshold;
 use crate::raster::{Mask, Raster};
-use image::{GrayImage, Luma};
+use image::GrayImage;
 use imageproc::contrast::otsu_level;
 use imageproc::morphology::Mask as Structure;
 use imageproc::morphology::grayscale_dilate;
+use rayon::prelude::*;
 
 /// Lighter than this share of full ink is paper.
 const PAPER: f32 = 0.1;
@@ -17,12 +18,10 @@ pub(crate) const LEAST_GRAIN: f64 = 0.01;
 
 /// Spread of the paper's grain, as a share of full ink; 0 for a clean render, whose paper is flat.
 pub(super) fn grain(ink: &Raster<f32>) -> f64 {
-    let paper = ink.data().iter().filter(|&&i| i < PAPER).count();
-    let flat = ink.data().iter().filter(|&&i| i < FLAT).count();
+    let [paper, flat, full] = counts(ink, [|i| i < PAPER, |i| i < FLAT, |i| i > 1.0 - PAPER]);
     // The paper's level is an upper quantile: of grainy paper, most lies below it.
     if 5 * flat >= 4 * paper {
         // Without anti-aliasing the edges are staircases, which ask to be smoothed like grain.
-        let full = ink.data().iter().filter(|&&i| i > 1.0 - PAPER).count();
         let grey = ink.data().len() - paper - full;
         return if 50 * grey < full { LEAST_GRAIN } else { 0.0 };
     }
@@ -40,6 +39,13 @@ pub(super) fn grain(ink: &Raster<f32>) -> f64 {
     (1.05 * f64::from(median)).max(LEAST_GRAIN)
 }
 
+/// How many pixels meet each condition.
+fn counts<const N: usize>(ink: &Raster<f32>, conditions: [fn(f32) -> bool; N]) -> [usize; N] {
+    let of = |part: &[f32]| conditions.map(|is_met| part.iter().filter(|&&i| is_met(i)).count());
+    let sum = |a: [usize; N], b: [usize; N]| std::array::from_fn(|k| a[k] + b[k]);
+    ink.data().par_chunks(1 << 14).map(of).reduce(|| [0; N], sum)
+}
+
 /// The coverage from which a normalised pixel counts as ink. A clean render's thin lines spread over two
 /// pixels, so its level lies lower.
 pub(super) fn level(noise: f64) -> f32 {
@@ -53,25 +59,27 @@ pub(super) fn level(noise: f64) -> f32 {
 /// lighter than the lines is no line, unless its ink may come in `shades`.
 pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shades: bool) -> (Raster<f32>, Mask) {
     if let Threshold::Fixed(t) = threshold {
-        let mask = ink.map(|i| f64::from(i) > t);
+        let mask = ink.mapped(false, |i| f64::from(i) > t);
         return (scaled(ink, (2.0 * t) as f32), mask);
     }
     let floor = floor(noise);
     let Some((otsu, core)) = global_levels(&ink, floor) else {
-        let mask = ink.map(|_| false);
+        let mask = Raster::filled(ink.width(), ink.height(), false);
         return (ink, mask);
     };
     if noise == 0.0 && core > 0.8 && !shades {
-        let mask = ink.map(|i| i > level(noise));
+        let mask = ink.mapped(false, |i| i > level(noise));
         return (ink, mask);
     }
     let nearby = nearby_core(&ink, (0.8 * otsu).max(floor));
     let ink = if is_even(&ink, &nearby, otsu, core) {
         scaled(ink, core)
     } else {
-        Raster::from_fn(ink.width(), ink.height(), |x, y| ink[(x, y)] / nearby[(x, y)])
+        Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
+            row.iter_mut().zip(ink.row(y)).zip(nearby.row(y)).for_each(|((to, &i), &core)| *to = i / core);
+        })
     };
-    let mask = ink.map(|i| i > level(noise));
+    let mask = ink.mapped(false, |i| i > level(noise));
     (ink, mask)
 }
 
@@ -82,19 +90,18 @@ fn floor(noise: f64) -> f32 {
 
 /// The ink in 256 steps.
 fn in_bytes(ink: &Raster<f32>) -> GrayImage {
-    GrayImage::from_fn(ink.width() as u32, ink.height() as u32, |x, y| {
-        Luma([(ink[(x as usize, y as usize)] * 255.0).round() as u8])
-    })
+    // Of a positive number, cutting off after adding a half is rounding.
+    ink.mapped(0, |i| (i * 255.0 + 0.5) as u8).into_image()
 }
 
 fn scaled(ink: Raster<f32>, core: f32) -> Raster<f32> {
-    ink.map(|i| i / core)
+    ink.mapped(0.0, |i| i / core)
 }
 
 /// Otsu's level and the ink of a line's core (an upper quantile above that level); `None` without ink.
 fn global_levels(ink: &Raster<f32>, floor: f32) -> Option<(f32, f32)> {
     let otsu = (f32::from(otsu_level(&in_bytes(ink))) / 255.0).max(floor);
-    let mut above: Vec<f32> = ink.data().iter().copied().filter(|&i| i > otsu).collect();
+    let mut above: Vec<f32> = ink.data().par_iter().copied().filter(|&i| i > otsu).collect();
     if above.is_empty() {
         return None;
     }

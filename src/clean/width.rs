@@ -3,6 +3,7 @@
 use crate::profile::cross_profile;
 use crate::raster::{Mask, Raster};
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// At most about this many places are measured.
@@ -23,14 +24,17 @@ pub(crate) fn is_ridge(depth: &Raster<f32>, x: usize, y: usize) -> bool {
 
 /// The pixels of the medial ridge, row by row.
 pub(super) fn ridge_pixels(mask: &Mask, depth: &Raster<f32>) -> Vec<(usize, usize)> {
-    let pixels = (0..mask.height()).flat_map(|y| (0..mask.width()).map(move |x| (x, y)));
-    pixels.filter(|&(x, y)| mask[(x, y)] && is_ridge(depth, x, y)).collect()
+    let of_row = |y: usize| {
+        let inked = mask.row(y).iter().enumerate().filter(|(_, m)| **m).map(move |(x, _)| (x, y));
+        inked.filter(|&(x, y)| is_ridge(depth, x, y))
+    };
+    (0..mask.height()).into_par_iter().flat_map_iter(of_row).collect()
 }
 
 /// Ink widths at places spread over the ridge, sorted: the narrowest of the cross profiles at each.
 pub(super) fn ridge_widths(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>) -> Vec<f64> {
     let ridge = ridge_pixels(mask, depth);
-    let sampled = ridge.iter().step_by((ridge.len() / SAMPLES).max(1));
+    let sampled = ridge.par_iter().step_by((ridge.len() / SAMPLES).max(1));
     let width = |&(x, y): &(usize, usize)| {
         let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
         Some(narrowest_direction(ink, centre, depth[(x, y)])?.1)
@@ -51,8 +55,7 @@ pub(super) fn narrowest_direction(ink: &Raster<f32>, p: Point, depth: f32) -> Op
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Typical line width in pixels: the median over the ridge; 1 without ink.
-pub(super) fn line_width(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>) -> f64 {
-    let widths = ridge_widths(ink, mask, depth);
+/// Typical line width in pixels: the median of the sorted widths on the ridge; 1 without ink.
+pub(super) fn line_width(widths: &[f64]) -> f64 {
     widths.get(widths.len() / 2).copied().unwrap_or(1.0)
 }

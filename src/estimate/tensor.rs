@@ -4,11 +4,17 @@ use super::FieldEstimator;
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
-use crate::field::PolyVectorField;
-use crate::moments::{Moments, fit, gradients};
-use crate::raster::Raster;
-use num_complex::Complex32;
+use crate::field::{Pixel, PolyVectorField};
+use crate::moments::{Windows, fit};
+use crate::raster::{Raster, runs};
 use rayon::prelude::*;
+use std::ops::Range;
+
+/// How many standard deviations the neighbourhood reaches.
+const REACH: f64 = 2.5;
+
+/// Side of the tiles that are computed one by one, in pixels: what they need stays in a core's cache.
+const TILE: usize = 128;
 
 /// The fourth-order structure tensor.
 #[derive(Clone, Debug)]
@@ -36,75 +42,49 @@ impl FieldEstimator for StructureTensor {
 
     fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
         cancel.check()?;
-        let sigma = (self.reach * image.line_width).max(1.2) as f32;
-        let gradients = gradients(&image.ink);
-        cancel.check()?;
-        let moments = blur_on(&gradients, &image.mask, sigma, cancel)?;
-        let solved: Vec<_> = moments.data().par_iter().map(|m| fit(m, self.prior)).collect();
-        let (width, height) = image.ink.size();
-        let field = |f: fn(&(Complex32, Complex32, f32)) -> Complex32| {
-            Raster::from_vec(width, height, solved.iter().map(f).collect()).expect("one solution per pixel")
+        let sigma = (self.reach * image.line_width).max(1.2);
+        let windows = Windows::new(&[sigma], REACH);
+        let tile = |windows: &mut Windows, at| {
+            if cancel.check().is_ok() { self.tile(windows, image, at) } else { Vec::new() }
         };
-        let confidence = Raster::from_vec(width, height, solved.iter().map(|s| s.2).collect()).expect("likewise");
-        PolyVectorField::new(field(|s| s.0), field(|s| s.1), confidence)
+        let (width, height) = image.ink.size();
+        let across = |y: usize| (0..width).step_by(TILE).map(move |x| (x, y));
+        let tiles: Vec<(usize, usize)> = (0..height).step_by(TILE).flat_map(across).collect();
+        let parts = tiles.par_iter().map_with(windows, |windows, &at| tile(windows, at)).collect();
+        cancel.check()?;
+        Ok(PolyVectorField::from_parts(width, height, parts))
     }
 }
 
-/// Gaussian blur of the moments, computed where the mask is set only.
-fn blur_on(
-    moments: &Raster<Moments>,
-    mask: &crate::raster::Mask,
-    sigma: f32,
-    cancel: &Cancel,
-) -> Result<Raster<Moments>> {
-    let radius = (2.5 * sigma).ceil() as i64;
-    let kernel: Vec<f32> = (-radius..=radius).map(|d| (-0.5 * (d as f32 / sigma).powi(2)).exp()).collect();
-    let (width, height) = moments.size();
-    let add = |sum: &mut Moments, m: &Moments, k: f32| sum.iter_mut().zip(m).for_each(|(s, v)| *s += k * v);
-    let columns: Vec<Vec<bool>> = (0..height).into_par_iter().map(|y| near_in_column(mask, y, radius)).collect();
-    let horizontal: Vec<Moments> = (0..height)
-        .into_par_iter()
-        .flat_map_iter(|y| {
-            let (row, needed, kernel) = (moments.row(y), &columns[y], &kernel);
-            (0..width).map(move |x| {
-                let mut sum = [0.0; 5];
-                if needed[x] {
-                    let (from, to) = ((x as i64 - radius).max(0), (x as i64 + radius).min(width as i64 - 1));
-                    for i in from..=to {
-                        add(&mut sum, &row[i as usize], kernel[(i - x as i64 + radius) as usize]);
-                    }
-                }
-                sum
-            })
-        })
-        .collect();
-    cancel.check()?;
-    let vertical: Vec<Moments> = (0..height)
-        .into_par_iter()
-        .flat_map_iter(|y| {
-            let (kernel, horizontal, mask) = (&kernel, &horizontal, mask.row(y));
-            (0..width).map(move |x| {
-                let mut sum = [0.0; 5];
-                if mask[x] {
-                    let (from, to) = ((y as i64 - radius).max(0), (y as i64 + radius).min(height as i64 - 1));
-                    for i in from..=to {
-                        add(&mut sum, &horizontal[i as usize * width + x], kernel[(i - y as i64 + radius) as usize]);
-                    }
-                }
-                sum
-            })
-        })
-        .collect();
-    cancel.check()?;
-    Ok(Raster::from_vec(width, height, vertical).expect("the blur keeps the size"))
-}
-
-/// Which pixels of a row have a mask pixel within `radius` rows in their column.
-fn near_in_column(mask: &crate::raster::Mask, y: usize, radius: i64) -> Vec<bool> {
-    let (from, to) = ((y as i64 - radius).max(0), (y as i64 + radius).min(mask.height() as i64 - 1));
-    let mut near = vec![false; mask.width()];
-    for row in from..=to {
-        near.iter_mut().zip(mask.row(row as usize)).for_each(|(n, &m)| *n |= m);
+impl StructureTensor {
+    /// The field of the ink in one tile, from the ink in it and around it.
+    fn tile(&self, windows: &mut Windows, image: &LineImage, at: (usize, usize)) -> Vec<Pixel> {
+        let (width, height) = image.ink.size();
+        // Gradients are taken from pixels around those that a window sees.
+        let margin = windows.reach() + 1;
+        let span = |at: usize, n: usize| at.saturating_sub(margin)..(at + TILE + margin).min(n);
+        let (columns, rows) = (span(at.0, width), span(at.1, height));
+        let (right, bottom) = ((at.0 + TILE).min(width), (at.1 + TILE).min(height));
+        let wanted = |y: usize| -> Vec<Range<usize>> {
+            if !(at.1..bottom).contains(&y) {
+                return Vec::new();
+            }
+            let left = at.0 - columns.start;
+            runs(&image.mask.row(y)[at.0..right]).map(|run| run.start + left..run.end + left).collect()
+        };
+        let wanted: Vec<_> = rows.clone().map(wanted).collect();
+        let mut pixels = Vec::new();
+        if wanted.iter().all(Vec::is_empty) {
+            return pixels;
+        }
+        let ink = Raster::from_fn(columns.len(), rows.len(), |x, y| image.ink[(columns.start + x, rows.start + y)]);
+        windows.average(&ink, &wanted, |_, x, y, moments| {
+            let first = (rows.start + y) * width + columns.start + x;
+            pixels.extend(moments.iter().enumerate().map(|(i, m)| {
+                let (c0, c2, confidence) = fit(m, self.prior);
+                Pixel { index: first + i, c0, c2, confidence }
+            }));
+        });
+        pixels
     }
-    near
 }

@@ -4,18 +4,19 @@ use super::FieldEstimator;
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::Result;
-use crate::field::{PolyVectorField, decode};
-use crate::raster::{Mask, Raster};
+use crate::field::{Pixel, PolyVectorField, is_defined};
+use crate::raster::{Mask, Raster, runs};
 use crate::unet::engine::{Engine, Scratch, TileCells};
-use crate::unet::{Features, UNetConfig, Weights, features, shown};
+use crate::unet::{Extractor, Features, Shown, UNetConfig, Weights, features};
 use burn::tensor::{Device, Tensor, TensorData};
 use num_complex::Complex32;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Largest side of the part of a tile that is kept, in pixels.
-const CORE: usize = 256;
+/// Largest side of the part of a tile that is kept, in pixels: the larger, the less is computed twice.
+const CORE: usize = 512;
 
 /// Pixels around a tile's core that the network also sees.
 const HALO: usize = 32;
@@ -85,18 +86,18 @@ impl FieldEstimator for UNet {
 
     fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
         let (width, height) = image.ink.size();
-        let ink = shown(image);
+        let ink = Shown::of(image);
         let grid = Grid::new(width, height, self.config.multiple());
         let tiles: Vec<(usize, usize)> = grid.tiles().collect();
         let tile = |at| Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
         let parts: Vec<Vec<Pixel>> = match &self.runner {
             Runner::Engine(engine) => {
-                let spare = Mutex::new(Vec::<Scratch>::new());
+                let spare = Mutex::new(Vec::<Room>::new());
                 let run = |&at: &(usize, usize)| {
                     let Some(tile) = tile(at) else { return Vec::new() };
-                    let mut scratch = lock(&spare).pop().unwrap_or_default();
-                    let pixels = tile.by_engine(engine, &mut scratch, &ink, self.config);
-                    lock(&spare).push(scratch);
+                    let mut room = lock(&spare).pop().unwrap_or_default();
+                    let pixels = tile.by_engine(engine, &mut room, &ink, self.config);
+                    lock(&spare).push(room);
                     pixels
                 };
                 tiles.par_iter().map(run).collect()
@@ -109,7 +110,7 @@ impl FieldEstimator for UNet {
             }
         };
         cancel.check()?;
-        let field = assemble(width, height, &image.mask, parts)?;
+        let field = PolyVectorField::from_parts(width, height, parts);
         Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(1.0, 8.0)))
     }
 }
@@ -118,8 +119,12 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A pixel's index in the image with its coefficients.
-type Pixel = (usize, [f32; 4]);
+/// What a tile is worked out in; to be reused from tile to tile.
+#[derive(Default)]
+struct Room {
+    features: Extractor,
+    scratch: Scratch,
+}
 
 /// How an image is cut into tiles of one size.
 struct Grid {
@@ -153,115 +158,115 @@ struct Tile<'a> {
     /// Width and height with the halo.
     size: (usize, usize),
     cells: TileCells,
+    /// The pixels of the core that get a field.
+    wanted: Mask,
     mask: &'a Mask,
 }
 
 impl<'a> Tile<'a> {
     /// `None` where the core has no ink.
     fn new(grid: &'a Grid, at: (usize, usize), mask: &'a Mask) -> Option<Self> {
-        let (halo, m) = (grid.halo(), grid.multiple);
-        let size = (grid.core.0 + 2 * halo, grid.core.1 + 2 * halo);
+        let (core, halo, m) = (grid.core, grid.halo(), grid.multiple);
+        let size = (core.0 + 2 * halo, core.1 + 2 * halo);
         let (columns, rows) = (size.0 / m, size.1 / m);
         let mut active = vec![false; columns * rows];
-        let mut any = false;
         // Ink beyond the core counts as far as the core's ink is influenced by it most.
-        let (near, far) = (halo - halo / 2, halo / 2);
-        for y in near..size.1 - far {
-            for x in near..size.0 - far {
-                if mask.get((at.0 + x) as i64 - halo as i64, (at.1 + y) as i64 - halo as i64) != Some(true) {
-                    continue;
-                }
-                let inside = |p: usize, core: usize| p >= halo && p < halo + core;
-                any |= inside(x, grid.core.0) && inside(y, grid.core.1);
-                for v in (y - CONTEXT) / m..=(y + CONTEXT) / m {
-                    for u in (x - CONTEXT) / m..=(x + CONTEXT) / m {
-                        active[v * columns + u] = true;
-                    }
-                }
+        for (run, y) in runs_around(mask, at, core, halo / 2) {
+            let cells = |from: usize, to: usize, at: usize| {
+                (from + halo - at - CONTEXT) / m..(to - 1 + halo - at + CONTEXT) / m + 1
+            };
+            for v in cells(y, y + 1, at.1) {
+                let cells = cells(run.start, run.end, at.0);
+                active[v * columns + cells.start..v * columns + cells.end].fill(true);
             }
         }
-        any.then(|| Self { grid, at, size, cells: TileCells::new(columns, rows, active), mask })
+        let mut wanted = Mask::filled(core.0, core.1, false);
+        for (run, y) in runs_around(mask, at, core, MARGIN) {
+            // The run with its margin, from the core's corner on.
+            let near = |from: usize, to: usize, at: usize, n: usize| {
+                from.saturating_sub(at + MARGIN)..(to + MARGIN).saturating_sub(at).min(n)
+            };
+            let (x, rows) = (near(run.start, run.end, at.0, core.0), near(y, y + 1, at.1, core.1));
+            rows.for_each(|v| wanted.data_mut()[v * core.0 + x.start..v * core.0 + x.end].fill(true));
+        }
+        let any = runs_around(mask, at, core, 0).next().is_some();
+        any.then(|| Self { grid, at, size, cells: TileCells::new(columns, rows, active), wanted, mask })
     }
 
     /// The ink under the tile, the image's edge pixels repeated outside.
-    fn cut(&self, ink: &Raster<f32>) -> Raster<f32> {
+    fn cut(&self, ink: &Shown) -> Raster<f32> {
         let halo = self.grid.halo();
         let (w, h) = self.grid.image;
         let clamp = |p: usize, n: usize| p.saturating_sub(halo).min(n - 1);
-        Raster::from_fn(self.size.0, self.size.1, |x, y| ink[(clamp(self.at.0 + x, w), clamp(self.at.1 + y, h))])
+        Raster::from_fn(self.size.0, self.size.1, |x, y| ink.at(clamp(self.at.0 + x, w), clamp(self.at.1 + y, h)))
     }
 
-    /// The index in the image of a pixel of the tile, if it is in the core and near ink.
-    fn wanted(&self, x: usize, y: usize) -> Option<usize> {
-        let halo = self.grid.halo();
-        let inside = |p: usize, core: usize| p >= halo && p < halo + core;
-        if !inside(x, self.grid.core.0) || !inside(y, self.grid.core.1) {
-            return None;
-        }
-        let (x, y) = (self.at.0 + x - halo, self.at.1 + y - halo);
-        let (w, h) = self.grid.image;
-        if x >= w || y >= h {
-            return None;
-        }
-        let rows = y.saturating_sub(MARGIN)..(y + MARGIN + 1).min(h);
-        let (left, right) = (x.saturating_sub(MARGIN), (x + MARGIN + 1).min(w));
-        let near = self.mask[(x, y)] || rows.into_iter().any(|v| self.mask.row(v)[left..right].contains(&true));
-        near.then_some(y * w + x)
+    /// The number in the image of a pixel of the tile, if it is in the core and near ink.
+    fn number(&self, x: usize, y: usize) -> Option<usize> {
+        let halo = self.grid.halo() as i64;
+        self.wanted.get(x as i64 - halo, y as i64 - halo).filter(|wanted| *wanted)?;
+        let (x, y) = (self.at.0 + x - halo as usize, self.at.1 + y - halo as usize);
+        let (width, height) = self.grid.image;
+        (x < width && y < height).then_some(y * width + x)
     }
 
-    fn by_engine(&self, engine: &Engine, scratch: &mut Scratch, ink: &Raster<f32>, config: UNetConfig) -> Vec<Pixel> {
-        let Features { channels, base } = features(&self.cut(ink), config.input);
-        let n = self.size.0 * self.size.1;
-        let mut out = Vec::new();
-        engine.run(scratch, &channels, &self.cells, |x, y, values| {
-            if let Some(index) = self.wanted(x, y) {
-                out.push((index, with_base(values, &base, n, y * self.size.0 + x)));
+    /// A pixel's field. Confidence is the modulus of the stronger root, at most 1, and less off the mask.
+    fn pixel(&self, index: usize, values: [f32; 4], base: [f32; 4]) -> Pixel {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| values[k] + base[k]);
+        let (c0, c2) = (Complex32::new(a, b), Complex32::new(c, d));
+        let strong = strong_root(c0, c2);
+        let confidence = match strong.clamp(0.05, 1.0) {
+            _ if !is_defined(c0, strong) => 0.0,
+            strong if self.mask.data()[index] => strong,
+            strong => 0.25 * strong,
+        };
+        Pixel { index, c0, c2, confidence }
+    }
+
+    fn by_engine(&self, engine: &Engine, room: &mut Room, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
+        let mut wanted = vec![Vec::new(); self.size.1];
+        self.cells.runs(self.grid.multiple, |x, y, n| wanted[y].push(x..x + n));
+        let Room { features, scratch } = room;
+        features.extract(&self.cut(ink), config.input, &wanted);
+        let mut pixels = Vec::new();
+        engine.run(scratch, &features.channels, &self.cells, |x, y, values| {
+            if let Some(index) = self.number(x, y) {
+                let base = features.base(y * self.size.0 + x).unwrap_or_default();
+                pixels.push(self.pixel(index, values, base));
             }
         });
-        out
+        pixels
     }
 
-    fn by_burn(&self, model: &crate::unet::UNet, device: &Device, ink: &Raster<f32>, config: UNetConfig) -> Vec<Pixel> {
+    fn by_burn(&self, model: &crate::unet::UNet, device: &Device, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
         let Features { channels, base } = features(&self.cut(ink), config.input);
         let (width, height) = self.size;
         let n = width * height;
         let data = TensorData::new(channels, [1, config.input.channels(), height, width]);
         let output = model.forward(Tensor::from_data(data, device)).into_data();
         let output = output.try_into_vec::<f32>().unwrap_or_else(|_| vec![0.0; 4 * n]);
-        let mut out = Vec::new();
-        for y in 0..height {
-            for x in 0..width {
-                if let Some(index) = self.wanted(x, y) {
-                    let i = y * width + x;
-                    out.push((index, with_base([0, 1, 2, 3].map(|k| output[k * n + i]), &base, n, i)));
-                }
-            }
-        }
-        out
+        let of_pixel = |i: usize| {
+            let base = if base.is_empty() { [0.0; 4] } else { [0, 1, 2, 3].map(|k| base[k * n + i]) };
+            let index = self.number(i % width, i / width)?;
+            Some(self.pixel(index, [0, 1, 2, 3].map(|k| output[k * n + i]), base))
+        };
+        (0..n).filter_map(of_pixel).collect()
     }
 }
 
-fn with_base(mut values: [f32; 4], base: &[f32], n: usize, i: usize) -> [f32; 4] {
-    if !base.is_empty() {
-        values.iter_mut().enumerate().for_each(|(k, v)| *v += base[k * n + i]);
-    }
-    values
-}
-
-/// Puts the tiles' pixels together. Confidence is the modulus of the stronger root, at most 1, and less off the mask.
-fn assemble(width: usize, height: usize, mask: &Mask, parts: Vec<Vec<Pixel>>) -> Result<PolyVectorField> {
-    let zero = Raster::filled(width, height, Complex32::default());
-    let (mut c0, mut c2) = (zero.clone(), zero);
-    let mut confidence = Raster::filled(width, height, 0.0f32);
-    for (i, [a, b, c, d]) in parts.into_iter().flatten() {
-        let (p, q) = (Complex32::new(a, b), Complex32::new(c, d));
-        (c0.data_mut()[i], c2.data_mut()[i]) = (p, q);
-        if decode(p, q).is_some() {
-            let strong = strong_root(p, q).clamp(0.05, 1.0);
-            confidence.data_mut()[i] = if mask.data()[i] { strong } else { 0.25 * strong };
-        }
-    }
-    PolyVectorField::new(c0, c2, confidence)
+/// The runs of ink in a core and so many pixels around it, each with its row.
+fn runs_around(
+    mask: &Mask,
+    at: (usize, usize),
+    core: (usize, usize),
+    margin: usize,
+) -> impl Iterator<Item = (Range<usize>, usize)> {
+    let span = |at: usize, core: usize, n: usize| at.saturating_sub(margin)..(at + core + margin).min(n);
+    let (columns, rows) = (span(at.0, core.0, mask.width()), span(at.1, core.1, mask.height()));
+    rows.flat_map(move |y| {
+        let left = columns.start;
+        runs(&mask.row(y)[columns.clone()]).map(move |run| (run.start + left..run.end + left, y))
+    })
 }
 
 /// Modulus of the larger root of `w^2 + c2 w + c0`.

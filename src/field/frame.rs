@@ -1,6 +1,7 @@
 //! Directions read from a field, at pixels and between them.
 
 use super::{PolyVectorField, decode};
+use crate::raster::floor;
 use kurbo::{Point, Vec2};
 use num_complex::Complex32;
 
@@ -54,13 +55,13 @@ impl FrameField {
     /// by confidence, then decoded. `None` where no defined pixel is near.
     pub fn at(&self, p: Point) -> Option<Frame> {
         let (fx, fy) = (p.x - 0.5, p.y - 0.5);
-        let (x0, y0) = (fx.floor(), fy.floor());
-        let (tx, ty) = ((fx - x0) as f32, (fy - y0) as f32);
+        let (x0, y0) = (floor(fx), floor(fy));
+        let (tx, ty) = ((fx - x0 as f64) as f32, (fy - y0 as f64) as f32);
         let (mut c0, mut c2, mut total) = (Complex32::default(), Complex32::default(), 0.0);
         for (dx, dy, weight) in
             [(0, 0, (1.0 - tx) * (1.0 - ty)), (1, 0, tx * (1.0 - ty)), (0, 1, (1.0 - tx) * ty), (1, 1, tx * ty)]
         {
-            let (x, y) = (x0 as i64 + dx, y0 as i64 + dy);
+            let (x, y) = (x0 + dx, y0 + dy);
             let Some(confidence) = self.field.confidence().get(x, y) else { continue };
             let weight = weight * confidence;
             if weight > 0.0 {

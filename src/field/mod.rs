@@ -37,7 +37,7 @@ pub fn decode(c0: Complex32, c2: Complex32) -> Option<Frame> {
     let sum = if (c2.conj() * root).re > 0.0 { -c2 - root } else { -c2 + root };
     let w1 = 0.5 * sum;
     let strong = w1.norm();
-    if !strong.is_finite() || !c0.re.is_finite() || !c0.im.is_finite() || strong < 1e-3 {
+    if !is_defined(c0, strong) {
         return None;
     }
     let w2 = c0 / w1;
@@ -46,8 +46,22 @@ pub fn decode(c0: Complex32, c2: Complex32) -> Option<Frame> {
     Some(Frame { u, v })
 }
 
+/// Whether coefficients whose stronger root has this modulus have directions.
+pub(crate) fn is_defined(c0: Complex32, strong: f32) -> bool {
+    strong.is_finite() && c0.is_finite() && strong >= 1e-3
+}
+
 fn direction(w: Complex32) -> Vec2 {
     Vec2::from_angle(0.5 * f64::from(w.arg()))
+}
+
+/// The coefficients of one pixel, by its number row by row, and their confidence.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixel {
+    pub index: usize,
+    pub c0: Complex32,
+    pub c2: Complex32,
+    pub confidence: f32,
 }
 
 /// A 2-PolyVector field over an image, undefined off the ink.
@@ -78,6 +92,19 @@ impl PolyVectorField {
             *confidence = if finite { confidence.clamp(0.0, 1.0) } else { 0.0 };
         }
         Ok(field)
+    }
+
+    /// A field that is defined at some pixels only.
+    pub(crate) fn from_parts(width: usize, height: usize, parts: Vec<Vec<Pixel>>) -> Self {
+        let (c0, c2) = (Raster::zeroed(width, height), Raster::zeroed(width, height));
+        let mut field = Self { c0, c2, confidence: Raster::zeroed(width, height) };
+        for pixel in parts.into_iter().flatten() {
+            field.c0.data_mut()[pixel.index] = pixel.c0;
+            field.c2.data_mut()[pixel.index] = pixel.c2;
+            let finite = pixel.c0.is_finite() && pixel.c2.is_finite() && pixel.confidence.is_finite();
+            field.confidence.data_mut()[pixel.index] = if finite { pixel.confidence.clamp(0.0, 1.0) } else { 0.0 };
+        }
+        field
     }
 
     /// A field from two directions per pixel; `None` where there is no ink.

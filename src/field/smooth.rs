@@ -4,9 +4,10 @@
 //! What crosses the line has other coefficients, and so little weight, however near it is.
 
 use super::PolyVectorField;
-use crate::raster::{Mask, Raster};
+use crate::raster::{Mask, runs};
 use num_complex::Complex32;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Distance of coefficients, `sqrt(|c0 - c0'|^2 + |c2 - c2'|^2)`, that is one standard deviation of the filter.
 const ALIKE: f32 = 0.3;
@@ -21,42 +22,67 @@ impl PolyVectorField {
     ///
     /// What lies off the mask stays as it is.
     #[must_use]
-    pub fn smoothed(&self, mask: &Mask, sigma: f64) -> Self {
-        let (width, height) = self.size();
-        let radius = (REACH * sigma).ceil() as usize;
-        let near: Vec<f32> = (0..=radius).map(|d| (-0.5 * (d as f64 / sigma).powi(2)).exp() as f32).collect();
-        let alike: Vec<f32> =
-            (0..STEPS).map(|i| (-0.5 * (i as f32 + 0.5) / STEPS as f32 * UNLIKE / (ALIKE * ALIKE)).exp()).collect();
-        let average = |x: usize, y: usize| {
-            let (c0, c2) = (self.c0[(x, y)], self.c2[(x, y)]);
-            let (mut sum0, mut sum2, mut total) = (Complex32::ZERO, Complex32::ZERO, 0.0);
-            let (left, right) = (x.saturating_sub(radius), (x + radius + 1).min(width));
-            for v in y.saturating_sub(radius)..(y + radius + 1).min(height) {
-                let row = mask.row(v)[left..right].iter().zip(&self.c0.row(v)[left..right]);
-                let row = row.zip(&self.c2.row(v)[left..right]).enumerate();
-                for (i, ((_, &a), &b)) in row.filter(|(_, ((inked, _), _))| **inked) {
-                    let step = ((a - c0).norm_sqr() + (b - c2).norm_sqr()) * (STEPS as f32 / UNLIKE);
-                    let Some(like) = alike.get(step as usize) else { continue };
-                    let weight = like * near[v.abs_diff(y)] * near[(left + i).abs_diff(x)];
-                    sum0 += a * weight;
-                    sum2 += b * weight;
-                    total += weight;
-                }
+    pub fn smoothed(mut self, mask: &Mask, sigma: f64) -> Self {
+        let width = mask.width();
+        let filter = Filter::new(&self, mask, sigma);
+        let rows: Vec<Vec<(Complex32, Complex32)>> =
+            (0..mask.height()).into_par_iter().map(|y| filter.row(y)).collect();
+        for (y, row) in rows.iter().enumerate() {
+            let pixels = runs(mask.row(y)).flatten().map(|x| y * width + x);
+            for (i, &(c0, c2)) in pixels.zip(row) {
+                (self.c0.data_mut()[i], self.c2.data_mut()[i]) = (c0, c2);
             }
-            if total > 0.0 { (sum0 / total, sum2 / total) } else { (c0, c2) }
-        };
-        let rows: Vec<Vec<(Complex32, Complex32)>> = (0..height)
-            .into_par_iter()
-            .map(|y| {
-                let own = |x| (self.c0[(x, y)], self.c2[(x, y)]);
-                (0..width).map(|x| if mask[(x, y)] { average(x, y) } else { own(x) }).collect()
-            })
-            .collect();
-        let plane = |part: fn(&(Complex32, Complex32)) -> Complex32| {
-            let data = rows.iter().flatten().map(part).collect();
-            Raster::from_vec(width, height, data).expect("a row for each row")
-        };
-        Self { c0: plane(|c| c.0), c2: plane(|c| c.1), confidence: self.confidence.clone() }
+        }
+        self
+    }
+}
+
+/// The filter at work on a field.
+struct Filter<'a> {
+    field: &'a PolyVectorField,
+    /// The runs of the mask in each row.
+    runs: Vec<Vec<Range<usize>>>,
+    /// Weights by distance in pixels along an axis.
+    near: Vec<f32>,
+    /// Weights by squared distance of coefficients.
+    alike: Vec<f32>,
+}
+
+impl<'a> Filter<'a> {
+    fn new(field: &'a PolyVectorField, mask: &Mask, sigma: f64) -> Self {
+        let radius = (REACH * sigma).ceil() as usize;
+        let near = (0..=radius).map(|d| (-0.5 * (d as f64 / sigma).powi(2)).exp() as f32).collect();
+        let weight = |i: usize| (-0.5 * (i as f32 + 0.5) / STEPS as f32 * UNLIKE / (ALIKE * ALIKE)).exp();
+        let alike = (0..STEPS).map(weight).collect();
+        let runs = (0..mask.height()).into_par_iter().map(|y| runs(mask.row(y)).collect()).collect();
+        Self { field, runs, near, alike }
+    }
+
+    /// The averages at the mask's pixels of a row.
+    fn row(&self, y: usize) -> Vec<(Complex32, Complex32)> {
+        self.runs[y].iter().flat_map(|run| run.clone().map(|x| self.average(x, y))).collect()
+    }
+
+    fn average(&self, x: usize, y: usize) -> (Complex32, Complex32) {
+        let (c0, c2) = (self.field.c0[(x, y)], self.field.c2[(x, y)]);
+        let radius = self.near.len() - 1;
+        let (left, right) = (x.saturating_sub(radius), x + radius + 1);
+        let (mut sum0, mut sum2, mut total) = (Complex32::ZERO, Complex32::ZERO, 0.0);
+        for v in y.saturating_sub(radius)..(y + radius + 1).min(self.runs.len()) {
+            let across = self.near[v.abs_diff(y)];
+            let first = self.runs[v].partition_point(|run| run.end <= left);
+            let inside = self.runs[v][first..].iter().take_while(|run| run.start < right);
+            for u in inside.flat_map(|run| run.start.max(left)..run.end.min(right)) {
+                let (a, b) = (self.field.c0[(u, v)], self.field.c2[(u, v)]);
+                let step = ((a - c0).norm_sqr() + (b - c2).norm_sqr()) * (STEPS as f32 / UNLIKE);
+                let Some(like) = self.alike.get(step as usize) else { continue };
+                let weight = like * across * self.near[u.abs_diff(x)];
+                sum0 += a * weight;
+                sum2 += b * weight;
+                total += weight;
+            }
+        }
+        if total > 0.0 { (sum0 / total, sum2 / total) } else { (c0, c2) }
     }
 }
 
@@ -64,6 +90,7 @@ impl PolyVectorField {
 mod tests {
     use super::super::{decode, encode};
     use super::*;
+    use crate::raster::Raster;
     use kurbo::Vec2;
 
     /// A field of the directions `angle(x, y)` and its normal, with an error that alternates from pixel to pixel.
@@ -103,7 +130,7 @@ mod tests {
         let half = |x: usize| if x < 20 { 0.1 } else { 0.8 };
         let field = noisy(40, |x, _| half(x));
         let mask = Raster::from_fn(40, 40, |_, y| y < 30);
-        let smooth = field.smoothed(&mask, 4.0);
+        let smooth = field.clone().smoothed(&mask, 4.0);
         for x in [17, 19, 20, 22] {
             assert!(error(&smooth, x, 15, half(x)) < 0.03, "{x}");
         }

@@ -80,33 +80,37 @@ fn solve(
     let third = chord.hypot() / 3.0;
     // Unknowns: along a fixed tangent one length, at a free end both coordinates; solved as one 4x4 system in
     // (p1, p2) with fixed tangents as stiff constraints across them.
-    let mut system = [[0.0; 5]; 4];
+    let slope = last.map(ParamCurveDeriv::deriv);
+    // For `b1 b1`, `b1 b2` and `b2 b2`: their sums times the parts of the projection; then the right-hand sides.
+    let (mut products, mut seen) = ([[0.0; 3]; 3], [Vec2::ZERO; 2]);
     for (&k, &t) in indices.iter().zip(parameters) {
         let w = samples.weights[k];
         let s = 1.0 - t;
         let (b0, b1, b2, b3) = (s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t);
         let fixed = ends.start.to_vec2() * b0 + ends.end.to_vec2() * b3;
         let rest = samples.points[k].to_vec2() - fixed;
-        let (xx, xy, yy) = match last {
+        let (xx, xy, yy) = match &slope {
             None => (1.0, 0.0, 1.0),
-            Some(curve) => {
-                let d = curve.deriv().eval(t).to_vec2();
-                let d = if d.hypot() > 1e-9 { d.normalize() } else { chord.normalize() };
-                let along = 1.0 - ALONG;
+            Some(slope) => {
+                let d = slope.eval(t).to_vec2();
+                let d = if d.hypot2() > 1e-18 { d } else { chord };
+                let along = (1.0 - ALONG) / d.hypot2();
                 (1.0 - along * d.x * d.x, -along * d.x * d.y, 1.0 - along * d.y * d.y)
             }
         };
-        let seen = Vec2::new(xx * rest.x + xy * rest.y, xy * rest.x + yy * rest.y);
-        for (i, a) in [b1, b2].into_iter().enumerate() {
-            for (j, b) in [b1, b2].into_iter().enumerate() {
-                system[2 * i][2 * j] += w * a * b * xx;
-                system[2 * i][2 * j + 1] += w * a * b * xy;
-                system[2 * i + 1][2 * j] += w * a * b * xy;
-                system[2 * i + 1][2 * j + 1] += w * a * b * yy;
-            }
-            system[2 * i][4] += w * a * seen.x;
-            system[2 * i + 1][4] += w * a * seen.y;
+        for (sums, b) in products.iter_mut().zip([b1 * b1, b1 * b2, b2 * b2]) {
+            let weight = w * b;
+            *sums = [sums[0] + weight * xx, sums[1] + weight * xy, sums[2] + weight * yy];
         }
+        let projected = Vec2::new(xx * rest.x + xy * rest.y, xy * rest.x + yy * rest.y);
+        seen = [seen[0] + projected * (w * b1), seen[1] + projected * (w * b2)];
+    }
+    let mut system = [[0.0; 5]; 4];
+    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let [xx, xy, yy] = products[i + j];
+        (system[2 * i][2 * j], system[2 * i][2 * j + 1]) = (xx, xy);
+        (system[2 * i + 1][2 * j], system[2 * i + 1][2 * j + 1]) = (xy, yy);
+        (system[2 * i][4], system[2 * i + 1][4]) = (seen[i].x, seen[i].y);
     }
     let scale = system.iter().enumerate().map(|(i, row)| row[i]).fold(1e-9, f64::max);
     // A weak pull to the last curve, or to the thirds of the chord, keeps the system well posed.

@@ -10,6 +10,7 @@ use crate::options::Options;
 use crate::streamline::{STEP, Streamline};
 use kurbo::{Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
+use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use std::collections::BTreeMap;
@@ -104,19 +105,12 @@ impl<'a> Assembly<'a> {
             places.map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i)).collect::<Vec<_>>(),
         );
         let mut found: BTreeMap<(usize, usize), Vec<Meeting>> = BTreeMap::new();
-        for (i, line) in lines.iter().enumerate() {
-            for k in 0..piece_count(line) {
-                let piece = Line::new(line.points[k], line.points[(k + 1) % line.points.len()]);
-                for (place, point, t) in index.crossings(piece) {
-                    let here = Place { line: i, at: k as f64 + t };
-                    let known = found.entry((i, place.line)).or_default();
-                    let is_new = self.is_crossing(&lines, here, place)
-                        && !self.is_again(known, here, place)
-                        && !self.is_at_node(&nodes, here, place, point);
-                    if is_new {
-                        known.push((here, place, point));
-                    }
-                }
+        let crossed = |i: usize| self.crossed(&lines, i, &index);
+        let crossed: Vec<Meeting> = (0..lines.len()).into_par_iter().flat_map_iter(crossed).collect();
+        for (here, place, point) in crossed {
+            let known = found.entry((here.line, place.line)).or_default();
+            if !self.is_again(known, here, place) && !self.is_at_node(&nodes, here, place, point) {
+                known.push((here, place, point));
             }
         }
         for (a, b, position) in found.into_values().flatten() {
@@ -131,6 +125,22 @@ impl<'a> Assembly<'a> {
             self.cuts[b.line].push(Cut { at: b.at, node });
         }
         self.lines = lines;
+    }
+
+    /// Where a line crosses itself and those after it, along the line.
+    fn crossed(&self, lines: &[Streamline], i: usize, index: &LineIndex) -> Vec<Meeting> {
+        let mut crossed = Vec::new();
+        let line = &lines[i];
+        for k in 0..piece_count(line) {
+            let piece = Line::new(line.points[k], line.points[(k + 1) % line.points.len()]);
+            for (place, point, t) in index.crossings(piece) {
+                let here = Place { line: i, at: k as f64 + t };
+                if self.is_crossing(lines, here, place) {
+                    crossed.push((here, place, point));
+                }
+            }
+        }
+        crossed
     }
 
     /// Each pair once; on one line only between parts that are far apart along it.

@@ -13,6 +13,7 @@ use crate::streamline::{STEP, Tail};
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
+use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use std::collections::BTreeMap;
@@ -42,9 +43,9 @@ struct Arm {
 /// Sets the confidence of every node.
 pub(super) fn rate(graph: &mut StrokeGraph) {
     let (points, links) = (points_of_edges(graph), links(graph));
-    let ratings: Vec<(NodeIndex, f64)> = graph
-        .graph
-        .node_indices()
+    let nodes: Vec<NodeIndex> = graph.graph.node_indices().collect();
+    let ratings: Vec<(NodeIndex, f64)> = nodes
+        .into_par_iter()
         .map(|node| {
             let confidence = match graph.graph[node].kind {
                 JunctionKind::Seam => 1.0,

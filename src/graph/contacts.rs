@@ -4,6 +4,7 @@ use super::ends::{End, end_id};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point, Vec2};
+use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 
@@ -166,7 +167,8 @@ pub(super) fn width_at(lines: &[Streamline], place: Place, typical: f64) -> f64 
 pub(super) fn contacts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]) -> Vec<Contact> {
     let index = LineIndex::new(lines);
     let finder = Finder { image, lines, ends, index };
-    let mut contacts: Vec<Contact> = ends.iter().flatten().flat_map(|end| finder.of_end(end)).collect();
+    let of_end = |end: &Option<End>| end.iter().flat_map(|end| finder.of_end(end)).collect::<Vec<_>>();
+    let mut contacts: Vec<Contact> = ends.par_iter().flat_map_iter(of_end).collect();
     finder.join_overlaps(&mut contacts);
     contacts
 }
@@ -207,8 +209,9 @@ impl Finder<'_> {
     /// Lines that the end's last stretch, or its straight continuation through ink, crosses.
     fn crossed(&self, end: &End) -> Vec<Contact> {
         let mut contacts = Vec::new();
-        let stretch = self.stretch(end);
-        let total: f64 = stretch.windows(2).map(|w| (w[1] - w[0]).hypot()).sum::<f64>() - self.extension(end);
+        let extension = self.extension(end);
+        let stretch = self.stretch(end, extension);
+        let total: f64 = stretch.windows(2).map(|w| (w[1] - w[0]).hypot()).sum::<f64>() - extension;
         let mut walked = 0.0;
         for pair in stretch.windows(2) {
             let piece = Line::new(pair[0], pair[1]);
@@ -225,15 +228,14 @@ impl Finder<'_> {
         contacts
     }
 
-    /// The last part of the line towards this end, outwards, and a little of its continuation.
-    fn stretch(&self, end: &End) -> Vec<Point> {
+    /// The last part of the line towards this end, outwards, and so much of its continuation.
+    fn stretch(&self, end: &End, extension: f64) -> Vec<Point> {
         let line = &self.lines[end.line];
         let n = line.points.len();
         let index = |k: usize| if end.side == 0 { k } else { n - 1 - k };
         let tip = if end.side == 0 { end.tip } else { n - 1 - end.tip };
         let count = (tip + (1.0 * end.width / STEP) as usize + 1).min(n - 1);
         let mut stretch: Vec<Point> = (0..=count).rev().map(|k| line.points[index(k)]).collect();
-        let extension = self.extension(end);
         if extension > 0.0
             && let [.., before, last] = stretch[..]
         {

@@ -5,6 +5,7 @@ use crate::clean::LineImage;
 use crate::drawing::Color;
 use crate::streamline::{STEP, Stop, Streamline, Tail};
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
 
 /// How much of a line tells where its end is heading, in line widths.
 const TAIL: f64 = 5.0;
@@ -42,7 +43,7 @@ pub(super) fn end_id(line: usize, side: usize) -> usize {
 /// The ends of all lines, `2 * line + side`; `None` for closed lines.
 pub(super) fn ends(image: &LineImage, lines: &[Streamline]) -> Vec<Option<End>> {
     let both = |line: usize| [0, 1].map(|side| end(image, lines, line, side));
-    (0..lines.len()).flat_map(both).collect()
+    (0..lines.len()).into_par_iter().flat_map_iter(both).collect()
 }
 
 fn end(image: &LineImage, lines: &[Streamline], line: usize, side: usize) -> Option<End> {

@@ -11,6 +11,7 @@ use super::ends::{End, ends};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
 
 /// A body is looked for within this many line widths of an end, running along it within this cosine's angle (50 degrees).
 const NEAR: f64 = 1.2;
@@ -36,9 +37,10 @@ const FEWEST: usize = 6;
 pub(super) fn merge(image: &LineImage, lines: &mut [Streamline]) {
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
-    let open = ends.iter().flatten().filter(|end| !end.stop.is_cut_off() && end.stop != Stop::Settled);
+    let is_open = |end: &&End| !end.stop.is_cut_off() && end.stop != Stop::Settled;
     let solved = |end: &End| Some((end.line, end.side, solve(image, lines, &index, end)?));
-    let solved: Vec<(usize, usize, Course)> = open.filter_map(solved).collect();
+    let solved: Vec<(usize, usize, Course)> =
+        ends.par_iter().filter_map(|end| solved(end.as_ref().filter(is_open)?)).collect();
     for (line, side, course) in solved {
         course.apply(&mut lines[line], side);
     }

@@ -6,6 +6,7 @@ use crate::clean::{LineImage, unblurred_width};
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
+use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -98,7 +99,8 @@ impl Solver<'_> {
             let id = end_id(end.line, end.side);
             members.entry(groups.find_mut(id)).or_default().push(id);
         }
-        members.into_values().map(|ends| self.node(ends)).collect()
+        let groups: Vec<Vec<usize>> = members.into_values().collect();
+        groups.into_par_iter().map(|ends| self.node(ends)).collect()
     }
 
     fn node(&self, ends: Vec<usize>) -> Node {

@@ -10,6 +10,7 @@ use super::nodes::arm_line;
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point, Vec2};
+use rayon::prelude::*;
 
 /// A body is looked for among the last so many line widths of a line, and so many ahead of it.
 const PAST: f64 = 1.4;
@@ -27,7 +28,7 @@ pub(super) fn settle(image: &LineImage, lines: &mut [Streamline]) {
     let ends = ends(image, lines);
     let before_gap = |end: &End| Some((end.line, end.side, tip(image, lines, &index, end)?));
     let settled: Vec<(usize, usize, Point)> =
-        ends.iter().flatten().filter(|end| !end.stop.is_cut_off()).filter_map(before_gap).collect();
+        ends.par_iter().filter_map(|end| before_gap(end.as_ref().filter(|end| !end.stop.is_cut_off())?)).collect();
     for (line, side, tip) in settled {
         shorten(&mut lines[line], side, tip);
     }

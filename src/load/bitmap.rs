@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::raster::Raster;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel, Rgb, RgbImage};
+use rayon::prelude::*;
 use std::io::Cursor;
 
 /// Spread between channels, of 1, up to which an image still counts as grey: what JPEG makes of a grey original.
@@ -89,7 +90,7 @@ fn decode(name: &str, bytes: &[u8], format: ImageFormat, options: &LoadOptions) 
 }
 
 /// A sample of any type as a fraction of its range.
-trait Unit: Copy {
+trait Unit: Copy + Sync {
     fn unit(self) -> f32;
 }
 
@@ -129,14 +130,23 @@ pub(super) fn scan(image: &DynamicImage, dpi: Option<f64>) -> Scan {
 
 fn scan_buffer<P: Pixel<Subpixel: Unit>>(image: &ImageBuffer<P, Vec<P::Subpixel>>, dpi: Option<f64>) -> Scan {
     let (width, height) = (image.width() as usize, image.height() as usize);
-    let gray = image.pixels().map(|p| luma(over_white(p))).collect();
-    let gray = Raster::from_vec(width, height, gray).expect("one sample for each pixel");
-    let colored = P::CHANNEL_COUNT >= 3 && image.pixels().any(|p| spread(over_white(p)) > COLOR_THRESHOLD);
+    let (samples, channels) = (image.as_raw().as_slice(), usize::from(P::CHANNEL_COUNT));
+    let rows = || samples.par_chunks_exact(channels * width.max(1));
+    let gray = Raster::from_rows(width, height, 0.0, |y, row| {
+        let colors = colors::<P>(&samples[y * width * channels..(y + 1) * width * channels]);
+        row.iter_mut().zip(colors).for_each(|(gray, color)| *gray = luma(color));
+    });
+    let colored = channels >= 3 && rows().any(|row| colors::<P>(row).any(|color| spread(color) > COLOR_THRESHOLD));
     let byte = |v: f32| (v * 255.0).round() as u8;
     let rgb = colored.then(|| {
         RgbImage::from_fn(image.width(), image.height(), |x, y| Rgb(over_white(image.get_pixel(x, y)).map(byte)))
     });
     Scan { gray, rgb, dpi }
+}
+
+/// The colours of some pixels, given by their samples.
+fn colors<P: Pixel<Subpixel: Unit>>(samples: &[P::Subpixel]) -> impl Iterator<Item = [f32; 3]> {
+    samples.chunks_exact(P::CHANNEL_COUNT.into()).map(|pixel| over_white(P::from_slice(pixel)))
 }
 
 /// Red, green and blue in `[0, 1]` of a pixel in front of white.

@@ -1,6 +1,7 @@
 //! Which ink is explained, and in which direction.
 
-use crate::raster::{Mask, Raster};
+use crate::clean::LineImage;
+use crate::raster::{Mask, Raster, floor};
 use kurbo::{Point, Vec2};
 
 /// Side of a grid cell in pixels.
@@ -19,35 +20,44 @@ pub(super) struct Mark {
 }
 
 /// The streamlines drawn so far.
-pub(super) struct Coverage {
+pub(super) struct Coverage<'a> {
+    /// Column and row of the first cell.
+    corner: (i64, i64),
     cells: Raster<u32>,
     marks: Vec<(Mark, u32)>,
+    /// From the first cell's corner on.
     painted: Mask,
-    mask: Mask,
-    line_width: f64,
+    image: &'a LineImage,
     /// Number of ink pixels in all.
     pub ink_pixels: usize,
 }
 
 const NONE: u32 = u32::MAX;
 
-impl Coverage {
-    /// Nothing is covered yet.
-    pub fn new(mask: &Mask, line_width: f64) -> Self {
-        let cells = |n: usize| (n as f64 / CELL).ceil() as usize + 1;
+impl<'a> Coverage<'a> {
+    /// Nothing is covered yet of a part of the image: its left, top, right and bottom.
+    pub fn new(image: &'a LineImage, [left, top, right, bottom]: [usize; 4], ink_pixels: usize) -> Self {
+        let first = |from: usize| from / CELL as usize;
+        let cells = |from: usize, to: usize, n: usize| to.min(n).div_ceil(CELL as usize) + 1 - first(from);
+        let (columns, rows) = (cells(left, right, image.mask.width()), cells(top, bottom, image.mask.height()));
         Self {
-            cells: Raster::filled(cells(mask.width()), cells(mask.height()), NONE),
+            corner: (first(left) as i64, first(top) as i64),
+            cells: Raster::filled(columns, rows, NONE),
             marks: Vec::new(),
-            painted: mask.map(|_| false),
-            mask: mask.clone(),
-            line_width,
-            ink_pixels: mask.count(),
+            painted: Mask::filled(columns * CELL as usize, rows * CELL as usize, false),
+            image,
+            ink_pixels,
         }
+    }
+
+    /// Column and row of the cell around a point.
+    fn cell(&self, p: Point) -> (i64, i64) {
+        (floor(p.x / CELL) - self.corner.0, floor(p.y / CELL) - self.corner.1)
     }
 
     /// Adds a point of a streamline.
     pub fn add(&mut self, mark: Mark) {
-        let (x, y) = ((mark.point.x / CELL).floor() as i64, (mark.point.y / CELL).floor() as i64);
+        let (x, y) = self.cell(mark.point);
         if self.cells.get(x, y).is_some() {
             let cell = &mut self.cells[(x as usize, y as usize)];
             self.marks.push((mark, *cell));
@@ -64,18 +74,19 @@ impl Coverage {
     pub fn truncate(&mut self, len: usize) {
         while self.marks.len() > len {
             if let Some((mark, link)) = self.marks.pop() {
-                let cell = ((mark.point.x / CELL).floor() as usize, (mark.point.y / CELL).floor() as usize);
-                self.cells[cell] = link;
+                let (x, y) = self.cell(mark.point);
+                self.cells[(x as usize, y as usize)] = link;
             }
         }
     }
 
     /// The nearest point within `radius` that runs in about the direction `heading`, among those that `counts`.
     pub fn nearest(&self, p: Point, heading: Vec2, radius: f64, counts: impl Fn(&Mark) -> bool) -> Option<Mark> {
-        let cell = |v: f64| (v / CELL).floor() as i64;
+        let reach = Vec2::new(radius, radius);
+        let ((left, top), (right, bottom)) = (self.cell(p - reach), self.cell(p + reach));
         let mut best: Option<(f64, Mark)> = None;
-        for y in cell(p.y - radius)..=cell(p.y + radius) {
-            for x in cell(p.x - radius)..=cell(p.x + radius) {
+        for y in top..=bottom {
+            for x in left..=right {
                 let mut next = self.cells.get(x, y).unwrap_or(NONE);
                 while next != NONE {
                     let (mark, link) = &self.marks[next as usize];
@@ -93,25 +104,32 @@ impl Coverage {
         best.map(|(_, mark)| mark)
     }
 
+    /// A pixel's place in [`Self::painted`].
+    fn from_corner(&self, x: i64, y: i64) -> (i64, i64) {
+        (x - self.corner.0 * CELL as i64, y - self.corner.1 * CELL as i64)
+    }
+
     /// Whether the pixel at a point lies under a streamline already.
     pub fn is_painted(&self, p: Point) -> bool {
-        self.painted.at(p).unwrap_or(true)
+        let (x, y) = self.from_corner(floor(p.x), floor(p.y));
+        self.painted.get(x, y).unwrap_or(true)
     }
 
     /// Paints a streamline's ink and returns how many mask pixels it is the first to paint.
     pub fn paint(&mut self, points: &[Point], widths: &[f64]) -> usize {
         let mut fresh = 0;
         for (p, width) in points.iter().zip(widths) {
-            let width = if width.is_finite() { *width } else { self.line_width };
+            let width = if width.is_finite() { *width } else { self.image.line_width };
             let radius = 0.5 * width + 0.75;
             let reach = radius.ceil() as i64;
-            let (cx, cy) = (p.x.floor() as i64, p.y.floor() as i64);
+            let (cx, cy) = (floor(p.x), floor(p.y));
             for y in cy - reach..=cy + reach {
                 for x in cx - reach..=cx + reach {
                     let d = Point::new(x as f64 + 0.5, y as f64 + 0.5) - *p;
-                    if d.hypot2() <= radius * radius && self.painted.get(x, y) == Some(false) {
-                        self.painted[(x as usize, y as usize)] = true;
-                        fresh += usize::from(self.mask[(x as usize, y as usize)]);
+                    let (u, v) = self.from_corner(x, y);
+                    if d.hypot2() <= radius * radius && self.painted.get(u, v) == Some(false) {
+                        self.painted[(u as usize, v as usize)] = true;
+                        fresh += usize::from(self.image.mask.get(x, y) == Some(true));
                     }
                 }
             }

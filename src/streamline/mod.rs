@@ -7,6 +7,7 @@
 
 mod coverage;
 pub(crate) mod heading;
+mod islands;
 mod relax;
 mod seeds;
 mod walk;
@@ -18,7 +19,9 @@ use crate::clean::LineImage;
 use crate::error::Result;
 use crate::field::FrameField;
 use coverage::Coverage;
+use islands::Island;
 use kurbo::Point;
+use rayon::prelude::*;
 use walk::Walker;
 
 /// Why a walk stopped.
@@ -68,9 +71,26 @@ pub(crate) const STEP: f64 = 0.5;
 /// # Errors
 /// The token's.
 pub fn trace(image: &LineImage, frames: &FrameField, cancel: &Cancel) -> Result<Vec<Streamline>> {
-    let mut coverage = Coverage::new(&image.mask, image.line_width);
+    let ink_pixels = image.mask.count();
+    let trace = |island: &Island| trace_island(image, frames, island, ink_pixels, cancel);
+    let islands = islands::islands(image, &seeds::seeds(image, frames));
+    let traced: Vec<Vec<(usize, Streamline)>> = islands.par_iter().map(trace).collect::<Result<_>>()?;
+    let mut streamlines: Vec<(usize, Streamline)> = traced.into_iter().flatten().collect();
+    streamlines.sort_by_key(|(rank, _)| *rank);
+    Ok(streamlines.into_iter().map(|(_, streamline)| streamline).collect())
+}
+
+/// The streamlines of an island, each with its seed's rank.
+fn trace_island(
+    image: &LineImage,
+    frames: &FrameField,
+    island: &Island,
+    ink_pixels: usize,
+    cancel: &Cancel,
+) -> Result<Vec<(usize, Streamline)>> {
+    let mut coverage = Coverage::new(image, island.bounds, ink_pixels);
     let mut streamlines = Vec::new();
-    for seed in seeds::seeds(image, frames) {
+    for (rank, seed) in &island.seeds {
         if coverage.is_painted(seed.point) {
             continue;
         }
@@ -78,7 +98,7 @@ pub fn trace(image: &LineImage, frames: &FrameField, cancel: &Cancel) -> Result<
         let id = streamlines.len() as u32;
         let before = coverage.len();
         let mut walker = Walker::new(image, frames, &mut coverage, id);
-        let mut streamline = walker.trace(&seed);
+        let mut streamline = walker.trace(seed);
         let width = walker.width();
         relax::relax(image, &mut streamline, width);
         let fresh = coverage.paint(&streamline.points, &streamline.widths);
@@ -86,7 +106,7 @@ pub fn trace(image: &LineImage, frames: &FrameField, cancel: &Cancel) -> Result<
         if (fresh as f64) < 0.4 * image.line_width * image.line_width {
             coverage.truncate(before);
         } else {
-            streamlines.push(streamline);
+            streamlines.push((*rank, streamline));
         }
     }
     Ok(streamlines)

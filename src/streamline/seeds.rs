@@ -2,7 +2,9 @@
 
 use crate::clean::{LineImage, is_ridge};
 use crate::field::FrameField;
+use crate::raster::runs;
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
 
 /// A place to start from, and the direction of the line there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,20 +18,19 @@ const LOOK: f64 = 4.0;
 
 /// All seeds, most certain first: where the ink is long in one direction of the frame and short in the other.
 pub(super) fn seeds(image: &LineImage, frames: &FrameField) -> Vec<Seed> {
-    let mut ranked = Vec::new();
-    let (width, height) = image.mask.size();
-    for y in 0..height {
-        for x in 0..width {
-            if image.mask[(x, y)] && is_ridge(&image.depth, x, y) {
-                let point = Point::new(x as f64 + 0.5, y as f64 + 0.5);
-                let Some(frame) = frames.at_pixel(x, y) else { continue };
-                let (along_u, along_v) = (run(image, point, frame.u), run(image, point, frame.v));
-                let tangent = if along_u >= along_v { frame.u } else { frame.v };
-                // Quantised, so that equal certainty falls back on the order of pixels.
-                ranked.push((((along_u - along_v).abs() * 4.0).round() as i64, Seed { point, tangent }));
-            }
-        }
-    }
+    let rank = |x: usize, y: usize| {
+        let point = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+        let frame = frames.at_pixel(x, y)?;
+        let (along_u, along_v) = (run(image, point, frame.u), run(image, point, frame.v));
+        let tangent = if along_u >= along_v { frame.u } else { frame.v };
+        // Quantised, so that equal certainty falls back on the order of pixels.
+        Some((((along_u - along_v).abs() * 4.0).round() as i64, Seed { point, tangent }))
+    };
+    let of_row = |y: usize| {
+        let ridge = runs(image.mask.row(y)).flatten().filter(move |&x| is_ridge(&image.depth, x, y));
+        ridge.filter_map(move |x| rank(x, y))
+    };
+    let mut ranked: Vec<(i64, Seed)> = (0..image.mask.height()).into_par_iter().flat_map_iter(of_row).collect();
     ranked.sort_by_key(|(certainty, _)| std::cmp::Reverse(*certainty));
     ranked.into_iter().map(|(_, seed)| seed).collect()
 }

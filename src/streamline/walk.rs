@@ -43,18 +43,18 @@ struct Step {
 }
 
 /// Follows one line from a seed, both ways.
-pub(super) struct Walker<'a> {
+pub(super) struct Walker<'a, 'b> {
     image: &'a LineImage,
     frames: &'a FrameField,
-    coverage: &'a mut Coverage,
+    coverage: &'b mut Coverage<'a>,
     id: u32,
     /// Running estimates of the line's width and of the ink in its middle.
     width: f64,
     core: f32,
 }
 
-impl<'a> Walker<'a> {
-    pub fn new(image: &'a LineImage, frames: &'a FrameField, coverage: &'a mut Coverage, id: u32) -> Self {
+impl<'a, 'b> Walker<'a, 'b> {
+    pub fn new(image: &'a LineImage, frames: &'a FrameField, coverage: &'b mut Coverage<'a>, id: u32) -> Self {
         Self { image, frames, coverage, id, width: image.line_width, core: 1.0 }
     }
 

@@ -1,9 +1,11 @@
 //! What the network is shown, from ink.
 
 use crate::clean::LineImage;
-use crate::moments::{Moments, fit, gradients};
-use crate::raster::Raster;
+use crate::moments::{Windows, fit};
+use crate::raster::{Raster, runs};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The channels of the network's input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Default)]
@@ -27,8 +29,9 @@ impl Input {
     }
 }
 
-/// Windows of the moments: standard deviations in pixels.
+/// Windows of the moments: standard deviations in pixels, and how many of them a window reaches.
 const SCALES: [f64; 2] = [1.8, 4.0];
+const REACH: f64 = 3.0;
 
 /// Gradient energy that counts as paper: coherence falls off below it.
 const FLOOR: f32 = 2e-3;
@@ -49,19 +52,43 @@ pub struct Features {
 /// The ink that the network is shown of a cleaned image: its dark cores at 1, which is nine tenths of the way up the
 /// ink on the mask.
 pub fn shown(image: &LineImage) -> Raster<f32> {
-    let mut counts = [0usize; 64];
-    let inked = image.ink.data().iter().zip(image.mask.data()).filter(|(_, m)| **m);
-    inked.for_each(|(i, _)| counts[(i.clamp(0.0, 1.0) * 63.0) as usize] += 1);
-    let mut left = counts.iter().sum::<usize>() / 10;
-    let mut core = 1.0f32;
-    for (bin, &n) in counts.iter().enumerate().rev() {
-        if left < n {
-            core = ((bin as f32 + 0.5) / 63.0).clamp(0.2, 1.0);
-            break;
+    let shown = Shown::of(image);
+    Raster::from_fn(image.ink.width(), image.ink.height(), |x, y| shown.at(x, y))
+}
+
+/// [`shown`] pixel by pixel.
+pub(crate) struct Shown<'a> {
+    ink: &'a Raster<f32>,
+    core: f32,
+}
+
+impl<'a> Shown<'a> {
+    pub fn of(image: &'a LineImage) -> Self {
+        let counts = (0..image.ink.height()).into_par_iter().fold(
+            || [0usize; 64],
+            |mut counts, y| {
+                let ink = image.ink.row(y);
+                let inked = runs(image.mask.row(y)).flatten().map(|x| ink[x]);
+                inked.for_each(|i| counts[(i.clamp(0.0, 1.0) * 63.0) as usize] += 1);
+                counts
+            },
+        );
+        let counts = counts.reduce(|| [0; 64], |a, b| std::array::from_fn(|k| a[k] + b[k]));
+        let mut left = counts.iter().sum::<usize>() / 10;
+        let mut core = 1.0f32;
+        for (bin, &n) in counts.iter().enumerate().rev() {
+            if left < n {
+                core = ((bin as f32 + 0.5) / 63.0).clamp(0.2, 1.0);
+                break;
+            }
+            left -= n;
         }
-        left -= n;
+        Self { ink: &image.ink, core }
     }
-    image.ink.map(|i| (i / core).clamp(0.0, 1.0))
+
+    pub fn at(&self, x: usize, y: usize) -> f32 {
+        (self.ink[(x, y)] / self.core).clamp(0.0, 1.0)
+    }
 }
 
 /// The network's input for an image of ink, 0 to 1.
@@ -70,57 +97,61 @@ pub fn shown(image: &LineImage) -> Raster<f32> {
 /// the channels are the ink, then `m2 / (m0 + floor)` and `m4 / (m0 + floor)` of each scale; the field that is
 /// corrected is the one that fits the moments of the smaller scale best.
 pub fn features(ink: &Raster<f32>, input: Input) -> Features {
-    let mut channels = ink.data().to_vec();
-    let mut base = Vec::new();
-    if input == Input::Ink {
-        return Features { channels, base };
-    }
-    let gradients = gradients(ink);
-    for (scale, sigma) in SCALES.into_iter().enumerate() {
-        let mut moments = window(&gradients, sigma);
-        for m in &mut moments {
-            let energy = m[0] + FLOOR;
-            m[1..].iter_mut().for_each(|v| *v /= energy);
-        }
-        (1..5).for_each(|k| channels.extend(moments.iter().map(|m| m[k])));
-        if scale == 0 {
-            let solved: Vec<_> = moments.iter().map(|&[_, a, b, c, d]| fit(&[1.0, a, b, c, d], PRIOR)).collect();
-            base.extend(solved.iter().map(|s| s.0.re));
-            base.extend(solved.iter().map(|s| s.0.im));
-            base.extend(solved.iter().map(|s| s.1.re));
-            base.extend(solved.iter().map(|s| s.1.im));
-        }
-    }
-    Features { channels, base }
+    let (width, height) = ink.size();
+    let everywhere = vec![std::iter::once(0..width).collect(); height];
+    let mut extractor = Extractor::default();
+    extractor.extract(ink, input, &everywhere);
+    let base: Vec<[f32; 4]> = (0..width * height).filter_map(|i| extractor.base(i)).collect();
+    let base = (0..4).flat_map(|k| base.iter().map(move |b| b[k])).collect();
+    Features { channels: extractor.channels, base }
 }
 
-/// Gaussian window average of moments, zero outside; the window is cut at three deviations.
-fn window(moments: &Raster<Moments>, sigma: f64) -> Vec<Moments> {
-    const N: usize = 5;
-    let (width, height) = moments.size();
-    let radius = (3.0 * sigma).ceil() as usize;
-    let mut kernel: Vec<f32> = (0..=radius).map(|d| (-((d * d) as f64) / (2.0 * sigma * sigma)).exp() as f32).collect();
-    let total = kernel[0] + 2.0 * kernel[1..].iter().sum::<f32>();
-    kernel.iter_mut().for_each(|k| *k /= total);
-    let mut across = vec![[0.0f32; N]; width * height];
-    let mut padded = vec![[0.0f32; N]; width + 2 * radius];
-    for (from, to) in moments.data().chunks_exact(width).zip(across.chunks_exact_mut(width)) {
-        padded[radius..radius + width].copy_from_slice(from);
-        let to = to.as_flattened_mut();
-        for (d, &k) in kernel.iter().enumerate().skip(1) {
-            let (left, right) = (padded[radius - d..].as_flattened(), padded[radius + d..].as_flattened());
-            to.iter_mut().zip(left).zip(right).for_each(|((t, l), r)| *t += k * (l + r));
-        }
-        to.iter_mut().zip(from.as_flattened()).for_each(|(t, f)| *t += kernel[0] * f);
+/// Computes features where they are wanted; its buffers are reused from image to image.
+#[derive(Clone, Debug)]
+pub(crate) struct Extractor {
+    windows: Windows,
+    /// [`Features::channels`], of no meaning where they were not wanted.
+    pub channels: Vec<f32>,
+    pixels: usize,
+}
+
+impl Default for Extractor {
+    fn default() -> Self {
+        Self { windows: Windows::new(&SCALES, REACH), channels: Vec::new(), pixels: 0 }
     }
-    let mut out = vec![[0.0f32; N]; width * height];
-    for (y, to) in out.chunks_exact_mut(width).enumerate() {
-        for v in y.saturating_sub(radius)..(y + radius + 1).min(height) {
-            let (k, from) = (kernel[v.abs_diff(y)], across[v * width..].as_flattened());
-            to.as_flattened_mut().iter_mut().zip(from).for_each(|(t, f)| *t += k * f);
+}
+
+impl Extractor {
+    /// Fills the channels; `wanted[y]` are ranges of columns, in order.
+    pub fn extract(&mut self, ink: &Raster<f32>, input: Input, wanted: &[Vec<Range<usize>>]) {
+        let (width, height) = ink.size();
+        let n = width * height;
+        self.pixels = n;
+        self.channels.resize(input.channels() * n, 0.0);
+        self.channels[..n].copy_from_slice(ink.data());
+        if input == Input::Ink {
+            return;
         }
+        let (_, moments) = self.channels.split_at_mut(n);
+        self.windows.average(ink, wanted, |scale, x, y, averages| {
+            let planes = moments[4 * scale * n..4 * (scale + 1) * n].chunks_exact_mut(n).enumerate();
+            for (k, plane) in planes {
+                let row = &mut plane[y * width + x..][..averages.len()];
+                row.iter_mut().zip(averages).for_each(|(to, m)| *to = m[k + 1] / (m[0] + FLOOR));
+            }
+        });
     }
-    out
+
+    /// `Re c0`, `Im c0`, `Re c2`, `Im c2` of the field that is corrected at a pixel, by its number; `None` for
+    /// [`Input::Ink`].
+    pub fn base(&self, pixel: usize) -> Option<[f32; 4]> {
+        let mut moments = [1.0; 5];
+        for (k, m) in moments.iter_mut().enumerate().skip(1) {
+            *m = *self.channels.get(k * self.pixels + pixel)?;
+        }
+        let (c0, c2, _) = fit(&moments, PRIOR);
+        Some([c0.re, c0.im, c2.re, c2.im])
+    }
 }
 
 #[cfg(test)]

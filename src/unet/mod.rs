@@ -7,6 +7,7 @@ mod model;
 mod weights;
 
 pub use device::device;
+pub(crate) use features::{Extractor, Shown};
 pub use features::{Features, Input, features, shown};
 pub use model::{Block, UNet, UNetConfig};
 pub use weights::{Weights, built_in, load, save};

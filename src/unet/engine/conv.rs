@@ -1,6 +1,7 @@
 //! Convolutions with the norm folded in.
 
 use super::plane::{BLOCK, Cells, Plane};
+use super::squares::{Squares, transformed};
 use pulp::{Arch, Simd, WithSimd};
 
 /// A 3x3 or 1x1 convolution, a bias, and a ReLU unless it is the head.
@@ -8,14 +9,18 @@ use pulp::{Arch, Simd, WithSimd};
 pub(super) struct Conv {
     /// Side of the kernel, 1 or 3.
     side: usize,
-    input: usize,
+    /// Input channels.
+    pub input: usize,
     /// Output channels, rounded up to a multiple of [`BLOCK`].
     pub output: usize,
     /// `[output / BLOCK, side, side, input, BLOCK]`.
     weights: Vec<f32>,
+    /// The weights of [`Squares`]; none for a side of 1.
+    squares: Vec<f32>,
     /// `[output]`.
-    bias: Vec<f32>,
-    relu: bool,
+    pub bias: Vec<f32>,
+    /// Whether negative outputs are cut off.
+    pub relu: bool,
 }
 
 impl Conv {
@@ -25,26 +30,35 @@ impl Conv {
         let (taps, output) = (side * side, bias.len());
         let inputs = weights.len() / (output * taps);
         let padded = output.next_multiple_of(BLOCK);
-        let mut packed = Vec::with_capacity(padded * source.len() * taps);
-        for block in 0..padded / BLOCK {
-            for tap in 0..taps {
+        // `[output, input, places]` as `[output / BLOCK, places, input, BLOCK]`.
+        let packed = |weights: &[f32], places: usize| {
+            let mut packed = Vec::with_capacity(padded * source.len() * places);
+            for (block, place) in (0..padded / BLOCK).flat_map(|block| (0..places).map(move |place| (block, place))) {
                 for from in source {
                     packed.extend((0..BLOCK).map(|lane| {
                         let o = block * BLOCK + lane;
-                        from.filter(|_| o < output).map_or(0.0, |i| weights[(o * inputs + i) * taps + tap])
+                        from.filter(|_| o < output).map_or(0.0, |i| weights[(o * inputs + i) * places + place])
                     }));
                 }
             }
-        }
+            packed
+        };
+        let squares: Vec<f32> =
+            if side == 3 { weights.chunks_exact(taps).flat_map(transformed).collect() } else { Vec::new() };
+        let squares = if side == 3 { packed(&squares, 16) } else { squares };
         let mut bias = bias.to_vec();
         bias.resize(padded, 0.0);
-        Self { side, input: source.len(), output: padded, weights: packed, bias, relu }
+        Self { side, input: source.len(), output: padded, weights: packed(weights, taps), squares, bias, relu }
     }
 
     /// Computes the active pixels of `to`, both planes having cells of `side` pixels.
     pub fn run(&self, arch: Arch, from: &Plane, to: &mut Plane, cells: &Cells, side: usize) {
         debug_assert!(from.channels == self.input && to.channels == self.output);
-        arch.dispatch(Run { conv: self, from, to, cells, side });
+        if self.side == 3 && side.is_multiple_of(2) {
+            arch.dispatch(Squares { conv: self, weights: &self.squares, from, to, cells, side });
+        } else {
+            arch.dispatch(Run { conv: self, from, to, cells, side });
+        }
     }
 }
 
@@ -75,18 +89,15 @@ impl Run<'_> {
     fn rows<S: Simd, const V: usize>(self, simd: S) {
         let Self { conv, from, to, cells, side } = self;
         // No closure may stand between here and the arithmetic: a call would leave the wide instructions behind.
-        let runs = cells.list(side);
+        let places = cells.places(side);
         for block in 0..conv.output / BLOCK {
-            for &(x, y, n) in &runs {
-                let mut done = 0;
-                while done + 4 <= n {
-                    pixels::<S, 4, V>(simd, conv, from, to, block, x + done, y);
-                    done += 4;
-                }
-                while done < n {
-                    pixels::<S, 1, V>(simd, conv, from, to, block, x + done, y);
-                    done += 1;
-                }
+            let mut rest = places.as_slice();
+            while let Some((group, others)) = rest.split_first_chunk::<4>() {
+                pixels::<S, 4, V>(simd, conv, from, to, block, group);
+                rest = others;
+            }
+            for &place in rest {
+                pixels::<S, 1, V>(simd, conv, from, to, block, &[place]);
             }
         }
     }
@@ -100,11 +111,9 @@ fn pixels<S: Simd, const P: usize, const V: usize>(
     from: &Plane,
     to: &mut Plane,
     block: usize,
-    x: usize,
-    y: usize,
+    places: &[(u16, u16); P],
 ) {
-    let c = conv.input;
-    let reach = conv.side * c;
+    let reach = conv.side * conv.input;
     let border = usize::from(conv.side == 1);
     let (bias, _) = S::as_simd_f32s(&conv.bias[block * BLOCK..(block + 1) * BLOCK]);
     let mut sums = [[simd.splat_f32s(0.0); V]; P];
@@ -114,10 +123,10 @@ fn pixels<S: Simd, const P: usize, const V: usize>(
     let size = conv.side * reach * BLOCK;
     let mut weights = conv.weights[block * size..(block + 1) * size].chunks_exact(reach * BLOCK);
     for row in 0..conv.side {
-        let line = from.bordered(x + border, y + row + border, P + conv.side - 1);
         let mut windows: [&[f32]; P] = [&[]; P];
         for p in 0..P {
-            windows[p] = &line[p * c..p * c + reach];
+            let (x, y) = (usize::from(places[p].0), usize::from(places[p].1));
+            windows[p] = from.bordered(x + border, y + row + border, conv.side);
         }
         let Some(weights) = weights.next() else { return };
         for (j, w) in weights.chunks_exact(BLOCK).enumerate() {
@@ -131,10 +140,9 @@ fn pixels<S: Simd, const P: usize, const V: usize>(
         }
     }
     let zero = simd.splat_f32s(0.0);
-    let target = to.pixels_mut(x, y, P);
-    for (p, pixel) in sums.iter().enumerate() {
-        let at = p * conv.output + block * BLOCK;
-        let (out, _) = S::as_mut_simd_f32s(&mut target[at..at + BLOCK]);
+    for (pixel, &(x, y)) in sums.iter().zip(places) {
+        let target = to.pixels_mut(x.into(), y.into(), 1);
+        let (out, _) = S::as_mut_simd_f32s(&mut target[block * BLOCK..(block + 1) * BLOCK]);
         for v in 0..V {
             out[v] = if conv.relu { simd.max_f32s(pixel[v], zero) } else { pixel[v] };
         }

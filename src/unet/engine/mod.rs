@@ -6,6 +6,7 @@
 
 mod conv;
 mod plane;
+mod squares;
 
 use super::model::{Block, UNet, UNetConfig};
 use burn::module::Param;
@@ -74,7 +75,7 @@ impl Engine {
     ) {
         self.prepare(scratch, cells);
         self.unshuffle(&mut scratch.planes[0], input, cells);
-        self.forward(&mut scratch.planes, cells);
+        self.forward(&mut scratch.planes, cells, |_| ());
         let p = self.config.patch;
         let last = scratch.planes.last().expect("the head's output");
         cells.runs(1 << self.config.levels, |x, y, n| {
@@ -145,7 +146,8 @@ impl Engine {
         });
     }
 
-    fn forward(&self, planes: &mut [Plane], cells: &TileCells) {
+    /// Fills all planes but the first; `done` gets each as soon as it is computed.
+    fn forward(&self, planes: &mut [Plane], cells: &TileCells, done: impl Fn(&mut Plane)) {
         let levels = self.config.levels;
         let side = |level: usize| 1 << (levels - level);
         let (mut at, mut ends) = (0, Vec::new());
@@ -153,37 +155,46 @@ impl Engine {
             if level > 0 {
                 let (from, to) = planes.split_at_mut(at + 1);
                 pool(&from[at], &mut to[0], cells, side(level));
+                done(&mut to[0]);
                 at += 1;
             }
-            at = self.block(planes, convs, at, cells, side(level));
+            at = self.block(planes, convs, at, cells, side(level), &done);
             ends.push(at);
         }
         for (convs, level) in self.up.iter().zip((0..levels).rev()) {
             let (from, to) = planes.split_at_mut(at + 1);
             join(&from[at], &from[ends[level]], &mut to[0], cells, side(level));
-            at = self.block(planes, convs, at + 1, cells, side(level));
+            done(&mut to[0]);
+            at = self.block(planes, convs, at + 1, cells, side(level), &done);
         }
         let (from, to) = planes.split_at_mut(at + 1);
         self.head.run(self.arch, &from[at], &mut to[0], cells, side(0));
+        done(&mut to[0]);
     }
 
     /// Two convolutions from plane `at`; the index of the plane with the result.
-    fn block(&self, planes: &mut [Plane], convs: &[Conv; 2], at: usize, cells: &TileCells, side: usize) -> usize {
+    fn block(
+        &self,
+        planes: &mut [Plane],
+        convs: &[Conv; 2],
+        at: usize,
+        cells: &TileCells,
+        side: usize,
+        done: &impl Fn(&mut Plane),
+    ) -> usize {
         for (i, conv) in convs.iter().enumerate() {
             let (from, to) = planes.split_at_mut(at + i + 1);
             conv.run(self.arch, &from[at + i], &mut to[0], cells, side);
+            done(&mut to[0]);
         }
         at + 2
     }
 
-    /// Runs the network on blank paper and reads each plane far from the border.
+    /// What each plane holds on blank paper: one cell is computed, and each plane goes on as it is there.
     fn blank_values(&self) -> Vec<Vec<f32>> {
-        // The receptive field is under 8 cells to each side.
-        let n = 17;
-        let cells = TileCells::new(n, n, vec![true; n * n]);
-        let mut planes = self.planes(n, n);
-        self.forward(&mut planes, &cells);
-        planes.iter().map(|p| p.pixels(p.width / 2, p.height / 2, 1).to_vec()).collect()
+        let mut planes = self.planes(1, 1);
+        self.forward(&mut planes, &TileCells::new(1, 1, vec![true]), Plane::spread);
+        planes.iter().map(|p| p.pixels(0, 0, 1).to_vec()).collect()
     }
 }
 

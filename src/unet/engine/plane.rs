@@ -28,6 +28,12 @@ impl Plane {
         &self.data[start..start + n * self.channels]
     }
 
+    /// Writes what the first pixel holds everywhere, to the border and beyond.
+    pub fn spread(&mut self) {
+        let pixel = self.pixels(0, 0, 1).to_vec();
+        self.data.chunks_exact_mut(pixel.len()).for_each(|to| to.copy_from_slice(&pixel));
+    }
+
     /// The channels of pixels `[x, x + n)` of row `y`.
     pub fn pixels(&self, x: usize, y: usize, n: usize) -> &[f32] {
         self.bordered(x + 1, y + 1, n)
@@ -66,11 +72,18 @@ impl Cells {
         self.runs_of(&self.active, side, f);
     }
 
-    /// The same as a list of `(x, y, n)`.
-    pub fn list(&self, side: usize) -> Vec<(usize, usize, usize)> {
-        let mut all = Vec::new();
-        self.runs(side, |x, y, n| all.push((x, y, n)));
-        all
+    /// The same pixel by pixel; tiles are far smaller than the type's range.
+    pub fn places(&self, side: usize) -> Vec<(u16, u16)> {
+        let mut places = Vec::new();
+        self.runs(side, |x, y, n| places.extend((x..x + n).map(|x| (x as u16, y as u16))));
+        places
+    }
+
+    /// The top left corners of the squares of 2x2 pixels that make up cells of an even side.
+    pub fn squares(&self, side: usize) -> Vec<(u16, u16)> {
+        let mut squares = Vec::new();
+        self.runs(side / 2, |x, y, n| squares.extend((x..x + n).map(|x| (2 * x as u16, 2 * y as u16))));
+        squares
     }
 
     /// The same for the pixels of rim cells.
