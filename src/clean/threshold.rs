@@ -13,6 +13,10 @@ use rayon::prelude::*;
 const PAPER: f32 = 0.1;
 /// A pixel of flat paper deviates by less than this: the rounding of 8-bit values.
 const FLAT: f32 = 0.008;
+/// Ink stands out from the paper's middle tone by so many of its deviations, and by no more than this share of the darkest
+/// ink.
+const WANDER: f32 = 4.5;
+const DARK_SHARE: f32 = 0.45;
 /// The grain that a scan has at least; less cannot be told from rounding.
 pub(crate) const LEAST_GRAIN: f64 = 0.01;
 
@@ -62,7 +66,7 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shade
         let mask = ink.mapped(false, |i| f64::from(i) > t);
         return (scaled(ink, (2.0 * t) as f32), mask);
     }
-    let floor = floor(noise);
+    let floor = floor(&ink, noise);
     let Some((otsu, core)) = global_levels(&ink, floor) else {
         let mask = Raster::filled(ink.width(), ink.height(), false);
         return (ink, mask);
@@ -71,7 +75,10 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shade
         let mask = ink.mapped(false, |i| i > level(noise));
         return (ink, mask);
     }
-    let nearby = nearby_core(&ink, (0.8 * otsu).max(floor));
+    // At the level of the mask, ink still stands out.
+    let least = floor / level(noise);
+    let core = core.max(least);
+    let nearby = nearby_core(&ink, (0.8 * otsu).max(least));
     let ink = if is_even(&ink, &nearby, otsu, core) {
         scaled(ink, core)
     } else {
@@ -83,9 +90,21 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shade
     (ink, mask)
 }
 
-/// The least ink that stands out from the grain.
-fn floor(noise: f64) -> f32 {
-    (6.0 * noise).max(0.06) as f32
+/// The least ink that stands out from the paper.
+///
+/// Grain is told from neighbouring pixels, and where a camera or its compression has smoothed it, the paper wanders by
+/// more: by what its lighter half does. Where ink covers most of the page that says nothing, so the darkest ink sets a
+/// limit.
+fn floor(ink: &Raster<f32>, noise: f64) -> f32 {
+    let grain = (6.0 * noise).max(0.06) as f32;
+    let mut values: Vec<f32> = ink.data().iter().step_by((ink.data().len() / 50_000).max(1)).copied().collect();
+    if noise == 0.0 || values.is_empty() {
+        return grain;
+    }
+    let n = values.len() as f64 - 1.0;
+    let mut quantile = |q: f64| *values.select_nth_unstable_by((n * q) as usize, f32::total_cmp).1;
+    let (light, middle, dark) = (quantile(0.16), quantile(0.5), quantile(0.999));
+    grain.max((middle + WANDER * (middle - light)).min(DARK_SHARE * dark))
 }
 
 /// The ink in 256 steps.

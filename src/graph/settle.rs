@@ -7,7 +7,7 @@ use super::approach::Approach;
 use super::contacts::{LineIndex, Place, around, direction, piece, piece_count, width_at};
 use super::ends::{End, ends};
 use super::nodes::arm_line;
-use crate::clean::LineImage;
+use crate::clean::{LineImage, unblurred_width};
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point, Vec2};
 use rayon::prelude::*;
@@ -19,6 +19,8 @@ const AHEAD: f64 = 2.5;
 const INNER: f64 = 1.6;
 /// How much of a body is looked at to either side, in line widths.
 const AROUND: f64 = 5.0;
+/// Of a thinner pen, in pixels, the cap is not seen.
+const THINNEST: f64 = 2.4;
 /// An end that comes in at a smaller angle than this sine's (30 degrees) hides its cap in the body's ink.
 const LEAST_SINE: f64 = 0.5;
 
@@ -39,6 +41,9 @@ fn tip(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) ->
     let (place, foot) = body(image, lines, index, end)?;
     let (_, heading) = arm_line(&end.tail, foot, image.line_width);
     if heading.cross(direction(lines, place)).abs() < LEAST_SINE {
+        return None;
+    }
+    if unblurred_width(end.width, image.blur) < THINNEST {
         return None;
     }
     let reach = AROUND * image.line_width;
