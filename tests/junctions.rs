@@ -5,13 +5,14 @@
 
 mod common;
 
-use common::compare::{apart, body_apart, bow, ends_apart, lines, straight_pieces};
+use common::compare::{apart, body_apart, bow, ends_apart, ends_of, lines, straight_pieces};
 use common::draw::{Pen, scan_of};
 use common::draw::{arc, circle, dot, line, polar, polyline, scan, scan_by, sheet, trace};
 use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Centreline, Drawing, Fill, Stroke};
 use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
+use std::f64::consts::FRAC_PI_2;
 use tiny_skia::LineCap;
 
 const CENTER: Point = Point::new(48.0, 48.0);
@@ -208,7 +209,7 @@ fn pencil_stem(turn: f64, width: f64, gap: Option<f64>) -> Result<f64, String> {
 #[test]
 fn a_pencil_stem_that_stops_short_stays_apart() {
     let cases = cases(&steps(0.0, 345.0, 15.0), &WIDTHS[1..4], &OFFSETS[..1]);
-    sweep("gaps on pencil scans", 1.0, &pairs(&cases, &[1.25, 1.5, 2.0]), |&((turn, width, _), gap)| {
+    sweep("gaps on pencil scans", 1.0, &pairs(&cases, &[0.75, 1.0, 1.25, 1.5, 2.0]), |&((turn, width, _), gap)| {
         let height = pencil_stem(turn, width, Some(gap))?;
         ensure((height - width - gap).abs() < 0.75, || format!("the stem ends {height:.2} from the bar"))
     });
@@ -370,4 +371,45 @@ fn a_hole_in_a_filled_shape_stays() {
 fn nothing_is_traced_where_nothing_is_drawn() {
     let result = trace(&scan(&sheet(64, 64, Vec::new())));
     assert!(lines(&result).is_empty() && result.fills.is_empty());
+}
+
+/// An arm that leaves a bar by an arc which touches it: the node is where arc and bar touch, however late their inks part.
+#[test]
+fn an_arm_that_leaves_by_an_arc_leaves_where_it_touches() {
+    let cases = pairs(&pairs(&[24.0, 32.0, 40.0], &[2.0, 3.0, 4.0, 5.0]), &steps(0.0, 165.0, 15.0));
+    sweep("arms that leave by an arc", 0.972, &cases, |&((radius, width), turn)| {
+        let along = Vec2::from_angle(turn.to_radians());
+        let touch = CENTER - along * 10.0;
+        let bar = line(touch - along * 24.0, touch + along * 48.0, width);
+        let arm = arc(touch + along.turn_90() * radius, radius, turn.to_radians() - FRAC_PI_2, 1.2, width);
+        let truth = [bar, arm];
+        let result = traced(&truth);
+        like(&truth, &result, 0.25, 1.6)?;
+        let start = ends_of(&result).into_iter().map(|end| end.distance(touch)).fold(f64::INFINITY, f64::min);
+        ensure(start < (1.25 * width).max(3.0), || format!("the arm starts {start:.1} from where it touches"))
+    });
+}
+
+/// Lines hardly wider than a pixel change their darkness with each pixel of their staircase and stay whole.
+#[test]
+fn hairlines_are_whole_at_every_angle() {
+    let cases = cases(&steps(0.0, 175.0, 5.0), &[1.2, 1.5, 1.8], &OFFSETS);
+    sweep("hairlines", 1.0, &cases, |&(angle, width, offset)| {
+        let truth = [line(polar(CENTER, angle, -36.0) + offset, polar(CENTER, angle, 36.0) + offset, width)];
+        let result = traced(&truth);
+        like(&truth, &result, 0.2, 0.8)?;
+        straight(&result, 0.4)
+    });
+}
+
+/// The same for circles.
+#[test]
+fn thin_circles_are_whole() {
+    let cases = pairs(&pairs(&[12.0, 20.0, 33.0], &[1.2, 1.5, 1.8]), &OFFSETS);
+    sweep("thin circles", 1.0, &cases, |&((radius, width), offset)| {
+        let truth = [circle(CENTER + offset, radius, width)];
+        let result = traced(&truth);
+        like(&truth, &result, 0.2, 0.8)?;
+        ensure(result.strokes[0].centreline.is_closed(), || "not closed".into())
+    });
 }

@@ -24,7 +24,7 @@ const APART: f64 = 1.2;
 /// A line from this many line widths on shows its own middle.
 const ALONE: f64 = 0.7;
 /// A meeting at an angle has to explain the edge better than a touch by this factor.
-const ANGLE: f64 = 2.5;
+const ANGLE: f64 = 2.0;
 /// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
 const MISFIT: f64 = 0.1;
 const MISFIT_PIXELS: f64 = 0.15;
@@ -74,6 +74,9 @@ impl Course {
 struct Sample {
     s: f64,
     y: f64,
+    /// Half the width of the line whose edge was measured, 0 where it was its middle: at a slope the edge is further away,
+    /// by the secant.
+    half: f64,
 }
 
 /// How a line leaves the body.
@@ -88,11 +91,27 @@ struct Leave {
 }
 
 impl Leave {
+    /// How much further away the edge is measured than the middle and half a width, for the slope there.
+    fn secant(&self, p: &Sample) -> f64 {
+        let u = (p.s - self.s0).max(0.0);
+        let k = self.curvature * u;
+        let slope = if self.slope > 0.0 { self.slope + k } else { k / (1.0 - k * k).max(0.1).sqrt() };
+        p.half * ((1.0 + slope * slope).sqrt() - 1.0)
+    }
+
+    /// From where on the line's edge lies outside the body's: a slanting line's is ahead of its middle.
+    fn first(&self, half: f64) -> f64 {
+        if self.slope <= 0.0 {
+            return self.s0;
+        }
+        self.s0 - half * ((1.0 + self.slope * self.slope).sqrt() - 1.0) / self.slope
+    }
+
     /// Distance from the body at a place.
     fn at(&self, s: f64) -> f64 {
-        let u = (s - self.s0).max(0.0);
+        let u = s - self.s0;
         if self.slope > 0.0 {
-            return self.slope * u + 0.5 * self.curvature * u * u;
+            return self.slope * u + 0.5 * self.curvature * u * u.max(0.0);
         }
         // A circle, as far as it goes.
         let k = self.curvature;
@@ -112,8 +131,7 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
         return None;
     }
     let alone = own.iter().position(|(sample, is_single)| *is_single && sample.y > ALONE * lw)?;
-    let far: Vec<Sample> = own[alone..].iter().map(|o| o.0).filter(|o| o.y < APART * lw).collect();
-    let samples: Vec<Sample> = edge.iter().chain(&far).copied().collect();
+    let samples: Vec<Sample> = edge.into_iter().chain(own[alone..].iter().map(|o| o.0)).collect();
     let leave = leave(&samples, 0.5 * (widths[1] - widths[0]))?;
     let deviation = (leave.error / samples.len() as f64).sqrt();
     if deviation > (MISFIT * lw).max(MISFIT_PIXELS) {
@@ -202,7 +220,7 @@ impl<'a> Frame<'a> {
         let index = |k: usize| if side == 0 { k } else { n - 1 - k };
         let own = (0..n).map_while(|k| {
             let (s, y) = self.locate(line.points[index(k)])?;
-            (y < reach).then_some((Sample { s, y }, line.widths[index(k)].is_finite()))
+            (y < reach).then_some((Sample { s, y, half: 0.0 }, line.widths[index(k)].is_finite()))
         });
         own.take((4.0 * self.range[1] / STEP) as usize).collect()
     }
@@ -216,7 +234,7 @@ impl<'a> Frame<'a> {
             let s = STEP * i as f64;
             let k = self.index(s)?;
             let edge = edge(image, self.body.points[k], self.normal(k), 0.5 * own + apart)?;
-            Some(Sample { s, y: edge - 0.5 * own })
+            Some(Sample { s, y: edge - 0.5 * own, half: 0.5 * own })
         };
         let count = self.range.map(|pixels| (pixels / STEP) as i64);
         let mut lowest = f64::MAX;
@@ -261,35 +279,50 @@ fn leave(samples: &[Sample], rest: f64) -> Option<Leave> {
     }
 }
 
+/// Rounds in which what the slope adds to the edge is found.
+const ROUNDS: usize = 3;
+
 /// A circle that touches the body at `s0`.
 fn touch(samples: &[Sample], s0: f64, rest: f64) -> Option<Leave> {
-    let (mut qq, mut qy) = (0.0, 0.0);
-    let q = |p: &Sample| 0.5 * ((p.s - s0).powi(2) + p.y * p.y);
-    for p in samples.iter().filter(|p| p.s > s0) {
-        // Near the far end, y must not fit itself.
-        (qq, qy) = (qq + q(p) * q(p), qy + q(p) * p.y);
+    let mut leave = Leave { s0, slope: 0.0, curvature: 0.0, error: 0.0 };
+    for _ in 0..ROUNDS {
+        let (mut qq, mut qy) = (0.0, 0.0);
+        for p in samples.iter().filter(|p| p.s > s0) {
+            let y = p.y - leave.secant(p);
+            let q = 0.5 * ((p.s - s0).powi(2) + y * y);
+            (qq, qy) = (qq + q * q, qy + q * y);
+        }
+        leave.curvature = qy / qq;
+        if leave.curvature.is_nan() || leave.curvature <= 0.0 {
+            return None;
+        }
     }
-    let curvature = qy / qq;
-    (curvature > 0.0).then(|| with_error(samples, rest, Leave { s0, slope: 0.0, curvature, error: 0.0 }))
+    Some(with_error(samples, rest, leave))
 }
 
 /// A line that meets the body at `s0` at an angle.
 fn angle(samples: &[Sample], s0: f64, rest: f64) -> Option<Leave> {
-    let (mut uu, mut uq, mut qq, mut uy, mut qy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for p in samples.iter().filter(|p| p.s > s0) {
-        let u = p.s - s0;
-        let q = 0.5 * u * u;
-        (uu, uq, qq, uy, qy) = (uu + u * u, uq + u * q, qq + q * q, uy + u * p.y, qy + q * p.y);
+    let mut leave = Leave { s0, slope: 0.0, curvature: 0.0, error: 0.0 };
+    for _ in 0..ROUNDS {
+        let (mut uu, mut uq, mut qq, mut uy, mut qy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for p in samples.iter().filter(|p| p.s > leave.first(p.half)) {
+            let (u, y) = (p.s - s0, p.y - leave.secant(p));
+            let q = 0.5 * u * u;
+            (uu, uq, qq, uy, qy) = (uu + u * u, uq + u * q, qq + q * q, uy + u * y, qy + q * y);
+        }
+        let det = uu * qq - uq * uq;
+        if det < 1e-9 {
+            return None;
+        }
+        (leave.slope, leave.curvature) = ((uy * qq - qy * uq) / det, (qy * uu - uy * uq) / det);
+        if leave.slope <= 0.0 {
+            return None;
+        }
     }
-    let det = uu * qq - uq * uq;
-    if det < 1e-9 {
-        return None;
-    }
-    let (slope, curvature) = ((uy * qq - qy * uq) / det, (qy * uu - uy * uq) / det);
-    (slope > 0.0).then(|| with_error(samples, rest, Leave { s0, slope, curvature, error: 0.0 }))
+    Some(with_error(samples, rest, leave))
 }
 
 fn with_error(samples: &[Sample], rest: f64, leave: Leave) -> Leave {
-    let off = |p: &Sample| p.y - if p.s > leave.s0 { leave.at(p.s).max(rest) } else { rest };
-    Leave { error: samples.iter().map(|p| off(p).powi(2)).sum(), ..leave }
+    let at = |p: &Sample| if p.s > leave.first(p.half) { (leave.at(p.s) + leave.secant(p)).max(rest) } else { rest };
+    Leave { error: samples.iter().map(|p| (p.y - at(p)).powi(2)).sum(), ..leave }
 }
