@@ -62,6 +62,14 @@ pub enum Error {
         /// Width and height of the image.
         image: (usize, usize),
     },
+    /// An observer left a stage's result so that the next stage cannot use it.
+    #[error("an observer broke the result of the {stage} stage: {reason}")]
+    Broken {
+        /// The stage whose result it was.
+        stage: &'static str,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A field estimator failed.
     #[error("the estimator {estimator} failed: {reason}")]
     Estimate {

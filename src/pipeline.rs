@@ -10,6 +10,7 @@ use crate::graph::StrokeGraph;
 use crate::hooks::Observer;
 use crate::load::Scan;
 use crate::options::Options;
+use crate::raster::Raster;
 use crate::{fit, graph, streamline};
 
 /// Traces scans under one set of options and one estimator.
@@ -72,6 +73,7 @@ impl Vectorizer {
         let cancel = observer.cancel();
         let mut image = clean::clean_until(scan, &self.options, &cancel)?;
         observer.on_line_image(&mut image)?;
+        image.validate()?;
         let field = self.estimate(&image, &cancel)?;
         self.follow(scan, &image, field, observer)
     }
@@ -96,11 +98,10 @@ impl Vectorizer {
         field: &PolyVectorField,
         observer: &mut dyn Observer,
     ) -> Result<Drawing> {
-        if field.size() != scan.gray.size() {
-            return Err(Error::FieldSize { field: field.size(), image: scan.gray.size() });
-        }
+        same_size(field, &scan.gray)?;
         let mut image = clean::clean_until(scan, &self.options, &observer.cancel())?;
         observer.on_line_image(&mut image)?;
+        image.validate()?;
         let (width, height) = image.ink.size();
         let graph = self.follow(scan, &image, field.resized(width, height), observer)?;
         self.draw(&graph, observer)
@@ -118,9 +119,7 @@ impl Vectorizer {
 
     fn estimate(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
         let field = self.estimator.estimate_until(image, cancel)?;
-        if field.size() != image.ink.size() {
-            return Err(Error::FieldSize { field: field.size(), image: image.ink.size() });
-        }
+        same_size(&field, &image.ink)?;
         Ok(field)
     }
 
@@ -132,11 +131,13 @@ impl Vectorizer {
         observer: &mut dyn Observer,
     ) -> Result<StrokeGraph> {
         observer.on_field(image, &mut field)?;
+        same_size(&field, &image.ink)?;
         let cancel = observer.cancel();
         let frames = FrameField::new(field);
         let mut streamlines = Vec::new();
         for mut streamline in streamline::trace(image, &frames, &cancel)? {
             if observer.on_streamline(image, &mut streamline)? {
+                streamline.validate()?;
                 streamlines.push(streamline);
             }
         }
@@ -146,6 +147,11 @@ impl Vectorizer {
         observer.on_graph(image, &mut graph)?;
         Ok(graph)
     }
+}
+
+fn same_size(field: &PolyVectorField, image: &Raster<f32>) -> Result<()> {
+    let (field, image) = (field.size(), image.size());
+    if field == image { Ok(()) } else { Err(Error::FieldSize { field, image }) }
 }
 
 /// The U-Net where it is built in, else the structure tensor.

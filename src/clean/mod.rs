@@ -18,7 +18,7 @@ pub(crate) use width::is_ridge;
 
 use crate::cancel::Cancel;
 use crate::drawing::Fill;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::Scan;
 use crate::options::{Invert, Options, Threshold};
 use crate::raster::{Mask, Raster};
@@ -63,6 +63,9 @@ const DARKEST: f32 = 2.0;
 const CLEAN_GAP: f64 = 0.15;
 /// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
 const NOISY_GAP: f64 = 0.65;
+/// Bounds of the sizes of a line image, in pixels: far beyond those of any drawing.
+const LEAST_SIZE: f64 = 1e-3;
+const LARGEST_SIZE: f64 = 1e4;
 /// The middle of a line that is averaged over to see past its grain, as a share of its width to either side.
 const CORE_BAND: f64 = 0.35;
 
@@ -120,6 +123,27 @@ impl GapProfile {
         let missing = |offset: f64| 1.0 - f64::from(image.core(p + heading * offset, heading) / core);
         let seen: f64 = self.samples.iter().map(|&(offset, share)| share * missing(offset)).sum();
         seen / self.whole
+    }
+}
+
+impl LineImage {
+    /// Checks what the later stages rely on, after somebody else may have changed it.
+    ///
+    /// # Errors
+    /// [`Error::Broken`].
+    pub(crate) fn validate(&self) -> Result<()> {
+        let broken = |reason: String| Err(Error::Broken { stage: "clean", reason });
+        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size())] {
+            if size != self.ink.size() {
+                return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
+            }
+        }
+        let positive = [("line width", self.line_width), ("scale", self.scale)].map(|(what, v)| (what, v, LEAST_SIZE));
+        let others = [("noise", self.noise, 0.0), ("blur", self.blur, 0.0)];
+        match positive.into_iter().chain(others).find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value)) {
+            Some((what, value, _)) => broken(format!("the {what} is {value}")),
+            None => Ok(()),
+        }
     }
 }
 

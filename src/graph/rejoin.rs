@@ -52,11 +52,13 @@ fn side(image: &LineImage, line: &Streamline, place: Place, step: i64) -> Option
 
 /// The lines with the given places cut; every part keeps the line's own stops at its outer ends.
 pub(super) fn cut_lines(lines: &[Streamline], places: &[Place]) -> Vec<Streamline> {
+    let mut of_line = vec![Vec::new(); lines.len()];
+    for place in places {
+        of_line[place.line].push((place.at.round() as usize).min(lines[place.line].points.len() - 1));
+    }
     let mut parts = Vec::new();
-    for (i, line) in lines.iter().enumerate() {
+    for (line, mut at) in lines.iter().zip(of_line) {
         let n = line.points.len();
-        let mut at: Vec<usize> =
-            places.iter().filter(|p| p.line == i).map(|p| (p.at.round() as usize).min(n - 1)).collect();
         at.sort_unstable();
         at.dedup();
         if at.is_empty() {

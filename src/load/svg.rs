@@ -12,7 +12,8 @@ use image::{DynamicImage, ImageReader, RgbaImage};
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use usvg::fontdb::Database;
 use usvg::{ImageHrefResolver, Tree};
 
 /// Longer side in pixels below which a drawing is enlarged where neither a size nor a resolution was asked for.
@@ -71,9 +72,20 @@ fn parse(name: &str, text: &[u8], options: &LoadOptions) -> Result<Tree> {
     let mut parser = usvg::Options { image_href_resolver: embedded_images(options.max_pixels), ..Default::default() };
     // Reading the system's fonts takes longer than a whole trace. Where there are none, text is left out.
     if text.windows(5).any(|w| w == b"<text") || text.windows(5).any(|w| w == b":text") {
-        parser.fontdb_mut().load_system_fonts();
+        parser.fontdb = system_fonts();
     }
     Tree::from_data(text, &parser).map_err(|e| undecodable(name, e))
+}
+
+/// The fonts of the system, read once.
+fn system_fonts() -> Arc<Database> {
+    static FONTS: OnceLock<Arc<Database>> = OnceLock::new();
+    let fonts = FONTS.get_or_init(|| {
+        let mut fonts = Database::new();
+        fonts.load_system_fonts();
+        Arc::new(fonts)
+    });
+    Arc::clone(fonts)
 }
 
 /// Shows images that are part of the file and of bearable size; other files are none of an SVG's business.

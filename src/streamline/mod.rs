@@ -16,7 +16,7 @@ pub(crate) use heading::{Tail, angle_between};
 
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::FrameField;
 use coverage::Coverage;
 use islands::Island;
@@ -61,6 +61,22 @@ pub struct Streamline {
     pub closed: bool,
     /// Why the walk stopped at the first and at the last point; of no meaning when closed.
     pub stops: [Stop; 2],
+}
+
+impl Streamline {
+    /// Checks what the later stages rely on, after somebody else may have changed it.
+    ///
+    /// # Errors
+    /// [`Error::Broken`].
+    pub(crate) fn validate(&self) -> Result<()> {
+        let reason = match (self.points.len(), self.widths.len()) {
+            (points, widths) if points != widths => format!("{points} points have {widths} widths"),
+            (0, _) => "a streamline has no points".into(),
+            _ if !self.points.iter().all(|p| p.is_finite()) => "a point is not finite".into(),
+            _ => return Ok(()),
+        };
+        Err(Error::Broken { stage: "streamline", reason })
+    }
 }
 
 /// Distance between points, in pixels.

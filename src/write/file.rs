@@ -4,7 +4,14 @@ use crate::error::{Error, Result};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::{Builder, NamedTempFile};
+
+/// How the names of temporary files begin and end.
+const PREFIX: &str = ".trace-";
+const SUFFIX: &str = ".tmp";
+/// A temporary file that is older than this belongs to a run that was killed.
+const ABANDONED: Duration = Duration::from_secs(600);
 
 /// Puts bytes in a file: they go to a temporary file in the same folder, which then takes the name. A
 /// file of that name keeps its old content until then, and its permissions; a link is followed. `-` is
@@ -51,10 +58,24 @@ fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
         _ => PathBuf::from("."),
     };
     let mut builder = Builder::new();
-    builder.prefix(".trace-").suffix(".tmp");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
     builder.tempfile_in(folder)
+}
+
+/// Removes what killed runs left in a folder: temporary files that nobody has written to for ten minutes, where a write
+/// takes milliseconds. What cannot be listed or removed stays.
+pub fn remove_abandoned(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.as_encoded_bytes();
+        let ours = name.starts_with(PREFIX.as_bytes()) && name.ends_with(SUFFIX.as_bytes());
+        let age = || entry.metadata().ok().filter(fs::Metadata::is_file)?.modified().ok()?.elapsed().ok();
+        if ours && age().is_some_and(|age| age > ABANDONED) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// The error without the temporary file's name.
@@ -108,6 +129,23 @@ mod tests {
         assert!(write_file(&path, b"new").is_err());
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names(folder.path()), ["a.svg"]);
+    }
+
+    #[test]
+    fn only_old_temporary_files_of_ours_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let hour_ago = std::time::SystemTime::now() - 6 * ABANDONED;
+        let kept = [".hidden.tmp", ".trace-", ".trace-x.svg", ".trace-young.tmp", "trace-a.tmp", "x.svg"];
+        for name in kept.iter().chain(&[".trace-old.tmp", ".trace-a b.tmp"]) {
+            let file = fs::File::create(folder.path().join(name)).unwrap();
+            file.set_modified(if name.contains("young") { hour_ago + 6 * ABANDONED } else { hour_ago }).unwrap();
+        }
+        fs::create_dir(folder.path().join(".trace-folder.tmp")).unwrap();
+        remove_abandoned(folder.path());
+        remove_abandoned(&folder.path().join("nowhere"));
+        let left = names(folder.path());
+        assert_eq!(left.len(), kept.len() + 1, "{left:?}");
+        assert!(kept.iter().all(|name| left.contains(&(*name).into())), "{left:?}");
     }
 
     #[cfg(unix)]

@@ -1,7 +1,8 @@
 //! From a drawing to bytes on disk.
 //!
 //! [`to_svg`] gives the text, [`pen_order`] the order of its paths, [`graph_json`] writes the stroke graph and reads it
-//! back, and [`write_file`] puts bytes in place whole or not at all.
+//! back, [`write_file`] puts bytes in place whole or not at all, and [`remove_abandoned`] clears away what a killed run
+//! left of that.
 
 mod file;
 pub mod graph_json;
@@ -10,7 +11,7 @@ mod order;
 mod path_data;
 mod svg;
 
-pub use file::write_file;
+pub use file::{remove_abandoned, write_file};
 pub use order::{pen_order, pen_up_length};
 pub use svg::{SvgOptions, to_svg};
 

@@ -2,11 +2,15 @@
 
 use crate::desk::{Desk, Run, assert_whole, large};
 use crate::faults::wait_for_files;
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 fn interrupt(child: &Child) {
-    let done = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    signal(child, "INT");
+}
+
+fn signal(child: &Child, name: &str) {
+    let done = Command::new("sh").args(["-c", &format!("kill -{name} {}", child.id())]).status().unwrap();
     assert!(done.success());
 }
 
@@ -16,10 +20,10 @@ fn an_interrupt_abandons_what_is_begun_and_tells_what_was_done() {
     for i in 0..8 {
         desk.picture(&format!("in/x{i:02}.png"), &large());
     }
-    for (jobs, out) in [("1", "one"), ("2", "two")] {
+    for (jobs, out, name) in [("1", "one", "INT"), ("2", "two", "INT"), ("2", "three", "TERM")] {
         let mut child = desk.command(&["in", "-o", out, "--json", "--jobs", jobs]).spawn().unwrap();
         wait_for_files(&desk.path(out), &mut child);
-        interrupt(&child);
+        signal(&child, name);
         let run = Run::of(child.wait_with_output().unwrap());
         run.ended(130, &["trace: interrupted: ", " left undone"]);
         let (traced, left) = (run.count("traced"), run.count("interrupted"));
@@ -58,4 +62,17 @@ fn a_second_interrupt_ends_at_once() {
     }
     assert_eq!(child.wait().unwrap().code(), Some(130));
     desk.contents("out").iter().for_each(|(_, svg)| assert_whole(svg));
+}
+
+#[test]
+fn a_batch_under_nohup_outlives_its_terminal() {
+    let desk = Desk::with_many(30);
+    let line = format!("trap '' HUP; exec {} in -o out --jobs 1", env!("CARGO_BIN_EXE_trace"));
+    let mut command = Command::new("sh");
+    command.args(["-c", &line]).current_dir(desk.path(""));
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for_files(&desk.path("out"), &mut child);
+    signal(&child, "HUP");
+    Run::of(child.wait_with_output().unwrap()).done();
+    assert_eq!(desk.files("out").len(), 30);
 }

@@ -8,6 +8,8 @@ use crate::source;
 use crate::target;
 use fieldtrace::Error;
 use fieldtrace::batch::{Batch, FileTracer, Plan, is_pattern};
+use fieldtrace::write::remove_abandoned;
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -37,6 +39,9 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     };
     let plan = plan(args, folder)?;
     fs::create_dir_all(folder).map_err(|cause| failed(Error::Write { path: folder.to_owned(), cause }))?;
+
+    let folders: BTreeSet<&Path> = plan.jobs.iter().filter_map(|job| job.output.parent()).collect();
+    folders.into_iter().for_each(remove_abandoned);
 
     let batch = Batch {
         jobs: args.batch.jobs.map_or(0, usize::from),

@@ -1,0 +1,264 @@
+//! The command line's options; their names are those of the library's `Options`.
+
+mod batch;
+mod input;
+mod network;
+mod strokes;
+
+pub(crate) use batch::BatchArgs;
+pub(crate) use input::LoadArgs;
+#[cfg(feature = "learned")]
+pub(crate) use network::DeviceArgs;
+pub(crate) use network::{DEFAULT_ESTIMATOR, Estimator, FieldSourceArgs, NetworkArgs};
+pub(crate) use strokes::{CleanArgs, FitArgs, options};
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  trace scan.png                          writes scan.svg
+  trace scan.jpg -o drawing.svg           names the output
+  trace - -o - < scan.tif > out.svg       reads standard input, writes standard output
+  trace plan.tif --preset plan --dpi 300  a plan, sized in millimetres
+  trace sketch.png --debug-dir look       also writes a picture of each stage to look/
+  trace scans -r -o drawings              every drawing of a folder and the folders in it
+  trace '2024-*/*.tif' -o drawings        every drawing that matches
+  trace scan.png -o graph.json            the stroke graph, to be looked at or corrected
+  trace graph.json -o out.svg             the strokes of a graph
+  trace field scan.png -o field.npz       the direction field alone
+  trace eval drawings                     how good the traces of a folder of SVGs are
+
+A file whose name is that of a subcommand is given as ./field.
+Exit codes: 0 done, 1 a file could not be traced, 2 wrong usage, 130 interrupted.";
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold());
+
+/// Turn a raster line drawing into few, smooth, editable centreline strokes.
+#[derive(Debug, Parser)]
+#[command(
+    name = "trace",
+    version,
+    styles = STYLES,
+    after_help = EXAMPLES,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    disable_help_subcommand = true,
+    subcommand_help_heading = "Subcommands"
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) trace: TraceArgs,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Write the field of directions that strokes follow.
+    Field(FieldArgs),
+    /// Compare traces with the strokes that were drawn.
+    Eval(EvalArgs),
+    /// Train the network that predicts the field.
+    #[cfg(feature = "learned")]
+    Train(TrainArgs),
+    /// Trace many drawings into a folder; the same as more than one IN
+    Batch(Box<TraceArgs>),
+}
+
+/// The arguments of a trace.
+#[derive(Debug, Args)]
+pub(crate) struct TraceArgs {
+    /// The drawing: PNG, JPEG, TIFF, WebP, BMP, GIF, PNM or SVG, or a stroke graph in JSON; `-` is standard
+    /// input. Several, a folder or a pattern make a batch
+    #[arg(value_name = "IN", required_unless_present = "manifest")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The SVG to write, the stroke graph where the name ends in .json, or the folder for a batch; `-` is
+    /// standard output [default: IN with .svg, or - for standard input]
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) load: LoadArgs,
+    #[command(flatten)]
+    pub(crate) clean: CleanArgs,
+    #[command(flatten)]
+    pub(crate) fit: FitArgs,
+    #[command(flatten)]
+    pub(crate) source: FieldSourceArgs,
+    /// Decimals of the coordinates and widths in the output
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = parse_precision, help_heading = "Output")]
+    pub(crate) precision: usize,
+    /// Also write the stroke graph, as JSON that can be corrected and traced on
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) graph: Option<PathBuf>,
+    /// Also write a picture of each stage, laid over the input, to this folder
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub(crate) debug_dir: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+    #[command(flatten)]
+    pub(crate) batch: BatchArgs,
+}
+
+/// The arguments of `trace field`.
+#[derive(Debug, Args)]
+pub(crate) struct FieldArgs {
+    /// The drawing, or `-` for standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// Where to: .npz for complex64 arrays c0 and c2 and a uint8 mask, each [height, width] of the
+    /// input; .png or .svg for a picture
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) load: LoadArgs,
+    #[command(flatten)]
+    pub(crate) clean: CleanArgs,
+    #[command(flatten)]
+    pub(crate) source: FieldSourceArgs,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// The arguments of `trace eval`.
+#[derive(Debug, Args)]
+pub(crate) struct EvalArgs {
+    /// Folders or files: SVGs with the true strokes, and the rasters to trace beside them. The truth of NAME.png and of
+    /// NAME.KIND.png is NAME.gt.svg or NAME.svg; an SVG without a raster is rendered
+    #[arg(value_name = "IN", required = true)]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Trace only the rasters NAME.KIND.png and the like; `render` renders the SVGs instead
+    #[arg(long, value_name = "KIND", value_delimiter = ',')]
+    pub(crate) kind: Vec<String>,
+    /// What gives the directions; several are compared
+    #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = DEFAULT_ESTIMATOR)]
+    pub(crate) estimators: Vec<Estimator>,
+    /// Also a row for each drawing
+    #[arg(long)]
+    pub(crate) files: bool,
+    /// Also write all figures to a file; `-` is standard output, in place of the table
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) load: LoadArgs,
+    #[command(flatten)]
+    pub(crate) clean: CleanArgs,
+    #[command(flatten)]
+    pub(crate) fit: FitArgs,
+    #[command(flatten)]
+    pub(crate) network: NetworkArgs,
+    /// No warnings
+    #[arg(short, long, help_heading = "Messages")]
+    pub(crate) quiet: bool,
+}
+
+/// The arguments of `trace train`.
+#[cfg(feature = "learned")]
+#[derive(Debug, Args)]
+pub(crate) struct TrainArgs {
+    /// A TOML file with what the run is to be; everything has a default
+    #[arg(value_name = "CONFIG")]
+    pub(crate) config: Option<PathBuf>,
+    /// The folder of the run: weights, checkpoint, metrics.csv, curves.svg
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// Go on from the checkpoint in the run's folder, exactly as if it had never stopped
+    #[arg(long, conflicts_with = "from")]
+    pub(crate) resume: bool,
+    /// Start from the weights in a file, or from `built-in`
+    #[arg(long, value_name = "WEIGHTS")]
+    pub(crate) from: Option<PathBuf>,
+    /// Mix in the strokes of the SVGs in a folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) svgs: Option<PathBuf>,
+    /// Steps in all
+    #[arg(long, value_name = "N")]
+    pub(crate) steps: Option<usize>,
+    /// Crops in a step
+    #[arg(long, value_name = "N")]
+    pub(crate) batch: Option<usize>,
+    /// Largest learning rate
+    #[arg(long, value_name = "R")]
+    pub(crate) rate: Option<f64>,
+    /// Stop after this many validations without a better one; 0 never does
+    #[arg(long, value_name = "N")]
+    pub(crate) patience: Option<usize>,
+    /// Seed of the weights and of all data
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    #[command(flatten)]
+    pub(crate) device: DeviceArgs,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// What is said on standard error.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Messages")]
+pub(crate) struct TalkArgs {
+    /// No warnings
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Seconds and counts of each stage
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
+}
+
+fn parse_number(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| "not a number".into())
+}
+
+fn parse_precision(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|n| *n <= 8).ok_or_else(|| "not a whole number between 0 and 8".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use fieldtrace::options::{self, Options, StrokeWidth, Threshold};
+
+    fn parsed(words: &[&str]) -> Options {
+        let cli = Cli::parse_from([&["trace", "in.png"], words].concat());
+        super::options(&cli.trace.clean, Some(&cli.trace.fit))
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn no_flag_gives_the_defaults() {
+        assert_eq!(parsed(&[]), Options::default());
+    }
+
+    #[test]
+    fn flags_override_a_preset() {
+        assert_eq!(parsed(&["--preset", "icon"]), Options::preset(options::Preset::Icon));
+        let overridden = parsed(&["--width", "2.5", "--preset", "icon", "--threshold", "0.4"]);
+        let icon = Options::preset(options::Preset::Icon);
+        assert_eq!(overridden, Options { width: StrokeWidth::Fixed(2.5), threshold: Threshold::Fixed(0.4), ..icon });
+    }
+
+    #[test]
+    fn the_help_names_the_true_defaults() {
+        let help = Cli::command().render_long_help().to_string();
+        let default = Options::default();
+        for value in [default.detail, default.min_length] {
+            assert!(help.contains(&format!("[default: {value}]")), "{value}");
+        }
+    }
+
+    #[test]
+    fn a_subcommand_and_a_file_of_its_name_are_told_apart() {
+        let field = Cli::parse_from(["trace", "field", "in.png", "-o", "f.npz"]);
+        assert!(matches!(field.command, Some(Command::Field(_))));
+        let file = Cli::parse_from(["trace", "./field"]);
+        assert_eq!((file.command.is_none(), file.trace.inputs), (true, vec!["./field".into()]));
+    }
+}

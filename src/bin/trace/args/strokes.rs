@@ -1,0 +1,123 @@
+//! How ink is told from paper, and strokes are made of it.
+
+use super::parse_number;
+use clap::{Args, ValueEnum};
+use fieldtrace::options::{self, Dashing, Invert, Options, StrokeWidth, Threshold};
+
+/// How ink is told from paper.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Ink")]
+pub(crate) struct CleanArgs {
+    /// Options that suit a kind of drawing; those given beside it override it
+    #[arg(long, value_name = "KIND")]
+    preset: Option<Preset>,
+    /// Darkness from which a pixel is ink: `auto`, or between 0 (paper) and 1 (black) [default: auto]
+    #[arg(long, value_name = "T", value_parser = parse_threshold, allow_negative_numbers = true)]
+    threshold: Option<Threshold>,
+    /// Whether the lines are lighter than the ground [default: auto]
+    #[arg(long, value_name = "WHEN", value_parser = parse_invert)]
+    invert: Option<Invert>,
+    /// Remove specks of at most this many pixels [default: decided from the image]
+    #[arg(long, value_name = "N")]
+    despeckle: Option<usize>,
+}
+
+/// How strokes are made.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Strokes")]
+pub(crate) struct FitArgs {
+    /// How far a curve may leave the ink's centre, in line widths: less follows closer, with more
+    /// pieces [default: 0.1]
+    #[arg(long, value_name = "W", value_parser = parse_number, allow_negative_numbers = true)]
+    detail: Option<f64>,
+    /// Drop strokes shorter than this many line widths, unless they are dots [default: 0.5]
+    #[arg(long, value_name = "W", value_parser = parse_number, allow_negative_numbers = true)]
+    min_length: Option<f64>,
+    /// Stroke widths: `measured` for each, `uniform` for the drawing's median, a number of pixels, or
+    /// `outline` for filled outlines that keep the taper of each [default: measured]
+    #[arg(long, value_name = "WIDTH", value_parser = parse_width, allow_negative_numbers = true)]
+    width: Option<StrokeWidth>,
+    /// Bridge breaks in a line of at most this many line widths, where direction and distance agree;
+    /// `auto` does so for a pencil's on a scan [default: auto]
+    #[arg(long, value_name = "W", value_parser = parse_gap, allow_negative_numbers = true)]
+    gap: Option<Gap>,
+    /// Dashes at even distances: `keep` each as a stroke, or `join` them into a dashed one [default: keep]
+    #[arg(long, value_name = "WHAT", value_parser = parse_dashes)]
+    dashes: Option<Dashing>,
+}
+
+/// Line widths of paper, or `None` for `auto`.
+#[derive(Clone, Copy, Debug)]
+struct Gap(Option<f64>);
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Preset {
+    /// Pencil and ink: looser curves, short strokes dropped
+    Sketch,
+    /// Technical plans: a tight fit, small details kept
+    Plan,
+    /// Icons: a tight fit, one width for all strokes
+    Icon,
+}
+
+/// The library's options: the preset's, overridden by those that were given.
+pub(crate) fn options(clean: &CleanArgs, fit: Option<&FitArgs>) -> Options {
+    let base = match clean.preset {
+        None => Options::default(),
+        Some(Preset::Sketch) => Options::preset(options::Preset::Sketch),
+        Some(Preset::Plan) => Options::preset(options::Preset::Plan),
+        Some(Preset::Icon) => Options::preset(options::Preset::Icon),
+    };
+    Options {
+        detail: fit.and_then(|f| f.detail).unwrap_or(base.detail),
+        min_length: fit.and_then(|f| f.min_length).unwrap_or(base.min_length),
+        despeckle: clean.despeckle.or(base.despeckle),
+        threshold: clean.threshold.unwrap_or(base.threshold),
+        invert: clean.invert.unwrap_or(base.invert),
+        width: fit.and_then(|f| f.width).unwrap_or(base.width),
+        gap: fit.and_then(|f| f.gap).map_or(base.gap, |Gap(gap)| gap),
+        dashes: fit.and_then(|f| f.dashes).unwrap_or(base.dashes),
+    }
+}
+
+fn parse_threshold(text: &str) -> Result<Threshold, String> {
+    match text {
+        "auto" => Ok(Threshold::Auto),
+        _ => parse_number(text).map(Threshold::Fixed).map_err(|_| "neither auto nor a number".into()),
+    }
+}
+
+fn parse_invert(text: &str) -> Result<Invert, String> {
+    match text {
+        "auto" => Ok(Invert::Auto),
+        "yes" => Ok(Invert::Yes),
+        "no" => Ok(Invert::No),
+        _ => Err("not one of auto, yes, no".into()),
+    }
+}
+
+fn parse_gap(text: &str) -> Result<Gap, String> {
+    match text {
+        "auto" => Ok(Gap(None)),
+        _ => parse_number(text).map(|w| Gap(Some(w))).map_err(|_| "neither auto nor a number".into()),
+    }
+}
+
+fn parse_dashes(text: &str) -> Result<Dashing, String> {
+    match text {
+        "keep" => Ok(Dashing::Keep),
+        "join" => Ok(Dashing::Join),
+        _ => Err("not one of keep, join".into()),
+    }
+}
+
+fn parse_width(text: &str) -> Result<StrokeWidth, String> {
+    match text {
+        "measured" => Ok(StrokeWidth::Measured),
+        "uniform" => Ok(StrokeWidth::Uniform),
+        "outline" => Ok(StrokeWidth::Outline),
+        _ => parse_number(text)
+            .map(StrokeWidth::Fixed)
+            .map_err(|_| "neither measured, uniform, outline nor a number".into()),
+    }
+}
