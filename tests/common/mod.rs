@@ -4,6 +4,8 @@
 
 pub mod compare;
 pub mod draw;
+pub mod figures;
+pub mod sheet;
 pub mod sweep;
 
 #[path = "../../samples/paper.rs"]

@@ -20,10 +20,15 @@ pub fn require(name: &str, floor: f64, share: f64) {
 /// Runs a rule over cases and prints and gives the share of them that keep it.
 pub fn share<C: Debug + Sync>(name: &str, cases: &[C], rule: impl Fn(&C) -> Result<(), String> + Sync) -> f64 {
     let results: Vec<Result<(), String>> = cases.par_iter().map(&rule).collect();
+    report(name, cases, &results)
+}
+
+/// Prints and gives the share of the cases that keep a rule, and what is wrong with the others.
+pub fn report<C: Debug>(name: &str, cases: &[C], results: &[Result<(), String>]) -> f64 {
     let passed = results.iter().filter(|r| r.is_ok()).count();
     let share = passed as f64 / cases.len() as f64;
     let failed = |(case, result): (&C, &Result<(), String>)| Some(format!("\n  {case:?}: {}", result.as_ref().err()?));
-    let failures: String = cases.iter().zip(&results).filter_map(failed).collect();
+    let failures: String = cases.iter().zip(results).filter_map(failed).collect();
     println!("{name}: {passed} of {} cases, {share:.3}{failures}", cases.len());
     share
 }

@@ -1,0 +1,151 @@
+//! Pens from one to 24 pixels, alone and together: ends, widths and meetings.
+//!
+//! Floors below one are the shares that were measured: `cargo test --test pens -- --nocapture` prints what fails. Each
+//! sweep leaves a sheet in `tmp/sheets` of Cargo's target directory, with what was drawn beside what was traced.
+
+mod common;
+
+use common::compare::ends_apart;
+use common::draw::{arc, line, polar, polyline, sheet};
+use common::figures::{figures, like_stroke, same_strokes, straight};
+use common::sweep::{ensure, pairs, steps};
+use fieldtrace::drawing::{Drawing, Stroke};
+use kurbo::Point;
+
+const CENTER: Point = Point::new(100.0, 100.0);
+const PENS: [f64; 10] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0];
+
+/// Strokes on 200 x 200 pixels.
+fn page(strokes: Vec<Stroke>) -> Drawing {
+    sheet(200, 200, strokes)
+}
+
+/// Every drawn stroke's width is found.
+fn same_widths(truth: &Drawing, traced: &Drawing, tolerance: f64) -> Result<(), String> {
+    for stroke in &truth.strokes {
+        let found = like_stroke(stroke, traced, f64::INFINITY)?.width;
+        let allowed = 0.35f64.max(0.06 * stroke.width);
+        ensure((found - stroke.width).abs() <= allowed.max(tolerance), || {
+            format!("{found:.2} wide for {}", stroke.width)
+        })?;
+    }
+    Ok(())
+}
+
+#[test]
+fn a_line_ends_within_half_a_pixel_at_every_width() {
+    let cases = pairs(&steps(0.0, 170.0, 10.0), &PENS);
+    figures(
+        "ends of lines of every width",
+        0.738,
+        &cases,
+        |&(angle, width)| {
+            let center = CENTER + kurbo::Vec2::new(0.3, 0.7);
+            page(vec![line(polar(center, angle, -70.0), polar(center, angle, 70.0), width)])
+        },
+        |_, truth, traced| {
+            ensure(traced.strokes.len() == 1, || format!("{} strokes", traced.strokes.len()))?;
+            let stroke = &truth.strokes[0].centreline;
+            let off = ends_apart(traced, &[stroke.start(), stroke.end()]);
+            ensure(off <= 0.5, || format!("an end is off by {off:.2}"))?;
+            same_widths(truth, traced, 0.0)?;
+            straight(traced, 0.35)
+        },
+    );
+}
+
+#[test]
+fn an_arc_ends_within_half_a_pixel_at_every_width() {
+    let cases = pairs(&steps(60.0, 300.0, 60.0), &PENS);
+    figures(
+        "ends of arcs of every width",
+        0.7,
+        &cases,
+        |&(sweep, width)| page(vec![arc(CENTER, 64.0, 0.3, sweep.to_radians(), width)]),
+        |_, truth, traced| {
+            same_strokes(truth, traced, 0.5)?;
+            let stroke = &truth.strokes[0].centreline;
+            let off = ends_apart(traced, &[stroke.start(), stroke.end()]);
+            ensure(off <= 0.5, || format!("an end is off by {off:.2}"))?;
+            same_widths(truth, traced, 0.0)
+        },
+    );
+}
+
+#[test]
+fn a_corner_is_sharp_at_every_width() {
+    let cases = pairs(&pairs(&[45.0, 90.0, 135.0], &PENS), &[0.0, 25.0]);
+    figures(
+        "corners of every width",
+        0.85,
+        &cases,
+        |&((opening, width), turn)| {
+            let tip = polar(CENTER, turn, -40.0);
+            let arm = |side: f64| polar(tip, turn + side * 0.5 * opening, 100.0);
+            page(vec![polyline(&[arm(-1.0), tip, arm(1.0)], false, width)])
+        },
+        |&((_, width), _), truth, traced| same_strokes(truth, traced, 0.1 * width + 0.5),
+    );
+}
+
+/// Pairs of different pens, the first the wider.
+fn two_pens() -> Vec<(f64, f64)> {
+    let pens = [1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 24.0];
+    pairs(&pens, &pens).into_iter().filter(|(a, b)| a > b).collect()
+}
+
+#[test]
+fn lines_of_two_widths_side_by_side_keep_theirs() {
+    figures(
+        "two pens side by side",
+        0.19,
+        &pairs(&two_pens(), &[0.0, 30.0]),
+        |&((wide, thin), turn)| {
+            let bar = |side: f64, width: f64| {
+                let center = polar(CENTER, turn + 90.0, side);
+                line(polar(center, turn, -70.0), polar(center, turn, 70.0), width)
+            };
+            page(vec![bar(-30.0, wide), bar(30.0, thin)])
+        },
+        |&((wide, _), _), truth, traced| {
+            same_strokes(truth, traced, 0.5 + 0.02 * wide)?;
+            same_widths(truth, traced, 0.0)
+        },
+    );
+}
+
+#[test]
+fn lines_of_two_widths_cross_straight() {
+    figures(
+        "two pens that cross",
+        0.285,
+        &pairs(&two_pens(), &[90.0, 50.0]),
+        |&((wide, thin), between)| {
+            let bar = |angle, width| line(polar(CENTER, angle, -80.0), polar(CENTER, angle, 80.0), width);
+            page(vec![bar(10.0, wide), bar(10.0 + between, thin)])
+        },
+        |&((wide, _), _), truth, traced| {
+            same_strokes(truth, traced, 0.5 + 0.05 * wide)?;
+            same_widths(truth, traced, 0.5)?;
+            straight(traced, 0.6)
+        },
+    );
+}
+
+#[test]
+fn a_thin_line_that_ends_on_a_wide_one_is_a_tee() {
+    figures(
+        "two pens in a tee",
+        0.38,
+        &pairs(&two_pens(), &[90.0, 60.0]),
+        |&((wide, thin), slant)| {
+            let bar = line(polar(CENTER, 10.0, -80.0), polar(CENTER, 10.0, 80.0), wide);
+            page(vec![bar, line(CENTER, polar(CENTER, 10.0 + slant, 80.0), thin)])
+        },
+        |&((wide, _), _), truth, traced| {
+            same_strokes(truth, traced, 0.5 + 0.05 * wide)?;
+            same_widths(truth, traced, 0.5)?;
+            straight(traced, 0.6)
+        },
+    );
+}
