@@ -187,6 +187,11 @@ fn smooth_loop(walk: &[TrailPoint], tolerance: Tolerance) -> Centreline {
 /// The circle through all samples, if none leaves it by more than the tolerance allows.
 fn circle(samples: &Samples, tolerance: Tolerance) -> Option<Circle> {
     let circle = fit_circle(samples, 0, samples.len() - 1)?;
+    // Points that are all around it are a diameter apart.
+    let across = samples.points.iter().map(|p| (*p - samples.points[0]).hypot()).fold(0.0, f64::max);
+    if across < circle.radius {
+        return None;
+    }
     let deviation = (circle.error / samples.len() as f64).sqrt();
     let off = samples.points.iter().zip(&samples.weights);
     let worst = off.map(|(p, w)| ((*p - circle.centre).hypot() - circle.radius).abs() * w).fold(0.0, f64::max);

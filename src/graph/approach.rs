@@ -42,8 +42,8 @@ pub(super) struct Approach {
 }
 
 impl Approach {
-    /// The pen's last point, where there is clearly paper between its ink and the line's.
-    pub fn tip(&self, image: &LineImage) -> Option<Point> {
+    /// The middle of the paper between the pen's ink and the line's, where there clearly is some.
+    pub fn gap(&self, image: &LineImage) -> Option<Point> {
         let [pen, body] = self.widths.map(|w| unblurred_width(w, image.blur));
         let pixels = self.pixels(image, pen, body);
         if pixels.len() < FEWEST {
@@ -59,7 +59,7 @@ impl Approach {
         let ((_, with), (end, without)) = (touching.into_iter().min_by(least)?, apart.into_iter().min_by(least)?);
         // The worse even the better one explains the pixels, the more it has to be the better one.
         let clear = CLEAR + UNLIKE * with.min(without) / pixels.len() as f64;
-        (without * clear < with).then(|| tip(end))
+        (without * clear < with).then(|| tip(0.5 * (end - 0.5 * pen + 0.5 * body)))
     }
 
     /// The pixels that tell of the pen's end.

@@ -25,6 +25,8 @@ const APART: f64 = 1.2;
 const ALONE: f64 = 0.7;
 /// A meeting at an angle has to explain the edge better than a touch by this factor.
 const ANGLE: f64 = 2.0;
+/// A line that meets the body at a larger slope (27 degrees) is a tee, whose arms tell its place better.
+const STEEPEST: f64 = 0.5;
 /// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
 const MISFIT: f64 = 0.1;
 const MISFIT_PIXELS: f64 = 0.15;
@@ -133,6 +135,9 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
     let alone = own.iter().position(|(sample, is_single)| *is_single && sample.y > ALONE * lw)?;
     let samples: Vec<Sample> = edge.into_iter().chain(own[alone..].iter().map(|o| o.0)).collect();
     let leave = leave(&samples, 0.5 * (widths[1] - widths[0]))?;
+    if leave.slope > STEEPEST {
+        return None;
+    }
     let deviation = (leave.error / samples.len() as f64).sqrt();
     if deviation > (MISFIT * lw).max(MISFIT_PIXELS) {
         return None;

@@ -197,7 +197,7 @@ impl Solver<'_> {
         let at = |k: usize| self.lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
         let d = at(0) - at((n - 1).min(3));
         let heading = if d.hypot() > 1e-9 { d.normalize() } else { end.tail.heading };
-        if end.stop.is_cut_off() || end.stop == Stop::Settled {
+        if end.stop.is_cut_off() {
             return end.point;
         }
         let width = unblurred_width(end.width, self.image.blur);

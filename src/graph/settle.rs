@@ -28,16 +28,16 @@ const LEAST_SINE: f64 = 0.5;
 pub(super) fn settle(image: &LineImage, lines: &mut [Streamline]) {
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
-    let before_gap = |end: &End| Some((end.line, end.side, tip(image, lines, &index, end)?));
+    let before_gap = |end: &End| Some((end.line, end.side, gap(image, lines, &index, end)?));
     let settled: Vec<(usize, usize, Point)> =
         ends.par_iter().filter_map(|end| before_gap(end.as_ref().filter(|end| !end.stop.is_cut_off())?)).collect();
-    for (line, side, tip) in settled {
-        shorten(&mut lines[line], side, tip);
+    for (line, side, gap) in settled {
+        shorten(&mut lines[line], side, gap);
     }
 }
 
-/// The last point of the pen, where there is a gap between it and the body that the end faces.
-fn tip(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Point> {
+/// The middle of the gap between an end and the body that it faces, if there is one.
+fn gap(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Point> {
     let (place, foot) = body(image, lines, index, end)?;
     let (_, heading) = arm_line(&end.tail, foot, image.line_width);
     if heading.cross(direction(lines, place)).abs() < LEAST_SINE {
@@ -61,7 +61,7 @@ fn tip(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) ->
         body: of_body.map(|k| piece(line, k)).collect(),
         others: near.map(|(p, ..)| other(p)).collect(),
     };
-    approach.tip(image)
+    approach.gap(image)
 }
 
 /// The first body on the last stretch of an end or ahead of it, and where the end's course crosses it.
@@ -87,13 +87,13 @@ fn is_inner(line: &Streamline, at: f64, margin: usize) -> bool {
     line.closed || (at >= margin as f64 && at + margin as f64 <= line.points.len() as f64 - 1.0)
 }
 
-/// Lets a line end at a point near its last ones; two points are left.
-fn shorten(line: &mut Streamline, side: usize, tip: Point) {
+/// Lets a line end before a place among its last points; two are left.
+fn shorten(line: &mut Streamline, side: usize, gap: Point) {
     let n = line.points.len();
     let at = |k: usize| line.points[if side == 0 { k } else { n - 1 - k }];
     let inner = at(n.min(3) - 1) - at(0);
     let heading = if inner.hypot() > 1e-9 { inner.normalize() } else { Vec2::ZERO };
-    let count = (0..n).take_while(|&k| (at(k) - tip).dot(heading) < 0.0).count().min(n - 2);
+    let count = (0..n).take_while(|&k| (at(k) - gap).dot(heading) < 0.0).count().min(n - 2);
     if side == 0 {
         line.points.drain(..count);
         line.widths.drain(..count);
@@ -101,16 +101,5 @@ fn shorten(line: &mut Streamline, side: usize, tip: Point) {
         line.points.truncate(n - count);
         line.widths.truncate(n - count);
     }
-    push(line, side, tip);
     line.stops[side] = Stop::Settled;
-}
-
-fn push(line: &mut Streamline, side: usize, point: Point) {
-    if side == 0 {
-        line.points.insert(0, point);
-        line.widths.insert(0, f64::NAN);
-    } else {
-        line.points.push(point);
-        line.widths.push(f64::NAN);
-    }
 }

@@ -37,7 +37,7 @@ pub enum Stop {
     Solid,
     /// It was cut at a junction because it had taken another line's arm.
     Cut,
-    /// The pen was lifted right here, before another line: [`Streamline::points`] ends at the pen's last point.
+    /// The pen was lifted here: there is paper between this line and the next.
     Settled,
     /// It meets another line at its last point, at a small angle or none.
     Joined,

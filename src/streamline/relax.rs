@@ -8,6 +8,7 @@ use super::{STEP, Streamline};
 use crate::clean::LineImage;
 use crate::profile::{Profile, cross_profile};
 use kurbo::{Point, Vec2};
+use std::iter::once;
 
 const ROUNDS: usize = 3;
 /// Ink wider than this many times the line's width, and so many pixels, is not the line's alone.
@@ -49,13 +50,13 @@ fn lateral(profiles: &[Option<Profile>], width: f64) -> Vec<f64> {
     let mut from = 0;
     for run in profiles.chunk_by(|a, b| is_wide(a) == is_wide(b)) {
         let to = from + run.len();
-        if is_wide(&run[0]) && run.len() as f64 * STEP > width {
+        // A line that widens to its end tapers.
+        let is_inner = from > 0 && to < profiles.len();
+        if is_inner && is_wide(&run[0]) && run.len() as f64 * STEP > width {
             let [left, right] = [Profile::shift_by_left, Profile::shift_by_right].map(|by| {
                 let shift = |p: &Option<Profile>| p.and_then(|p| by(&p, width));
-                let before = from.checked_sub(1).map(|k| shifts[k]);
-                let beyond = shifts.get(to).copied();
-                let all: Vec<Option<f64>> =
-                    before.map(Some).into_iter().chain(run.iter().map(shift)).chain(beyond.map(Some)).collect();
+                let before = once(Some(shifts[from - 1]));
+                let all: Vec<Option<f64>> = before.chain(run.iter().map(shift)).chain(once(Some(shifts[to]))).collect();
                 let steps = all.windows(2).map(|w| w[0].zip(w[1]).map_or(0.5 * width, |(a, b)| (b - a).abs()));
                 (steps.sum::<f64>(), run.iter().map(shift).collect::<Vec<_>>())
             });
