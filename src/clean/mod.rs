@@ -185,9 +185,9 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     let widths = width::ridge_widths(&ink, &mask, &depth);
     let mut line_width = width::line_width(&widths);
-    let scale = resample::scale_for(mask.size(), &widths, line_width);
+    let scale = resample::scale_for(mask.size(), noise, &widths, line_width);
     if scale != 1.0 {
-        ink = resample::resize(ink, scale);
+        ink = resample::resize(ink, noise, scale);
         cancel.check()?;
         mask = ink.mapped(false, |i| i > threshold::level(noise));
         depth = distance(&mask);

@@ -6,14 +6,17 @@ use image::imageops::{FilterType, resize as resize_image};
 
 /// Lines wider than this many pixels carry no more detail for it: they are traced at half this width.
 const THICK: f64 = 14.0;
-/// Lines thinner than this many pixels are enlarged, so that edges and directions can be told apart.
+/// Lines thinner than this many pixels are enlarged, so that edges and directions can be told apart; with the lines of a
+/// scan its grain is enlarged as well, so there only thinner ones are.
 const THIN: f64 = 2.4;
+const THIN_ON_SCAN: f64 = 1.75;
 /// The largest raster that is enlarged, in pixels.
 const ENLARGE_LIMIT: usize = 30_000_000;
 
-/// The factor by which to resample a drawing of a size, from the sorted widths of its lines; 1 for most.
-pub(super) fn scale_for((width, height): (usize, usize), widths: &[f64], line_width: f64) -> f64 {
-    if line_width < THIN && 4 * width * height <= ENLARGE_LIMIT {
+/// The factor by which to resample a drawing of a size, from its grain and the sorted widths of its lines; 1 for most.
+pub(super) fn scale_for((width, height): (usize, usize), noise: f64, widths: &[f64], line_width: f64) -> f64 {
+    let thin = if noise > 0.0 { THIN_ON_SCAN } else { THIN };
+    if line_width < thin && 4 * width * height <= ENLARGE_LIMIT {
         return 2.0;
     }
     let Some(&thin) = widths.get(widths.len() / 10) else { return 1.0 };
@@ -23,16 +26,16 @@ pub(super) fn scale_for((width, height): (usize, usize), widths: &[f64], line_wi
     if shrinks { scale } else { 1.0 }
 }
 
-/// Standard deviation, in pixels of the enlarged raster, of the blur that takes the staircase of pixels out of lines that
-/// are hardly wider than a pixel.
+/// Standard deviation, in pixels of the enlarged raster, of the blur that takes the staircase of pixels out of a clean
+/// render's lines that are hardly wider than a pixel.
 pub(super) const SOFTENING: f64 = 0.8;
 
 /// Resamples ink by a factor, averaging areas when shrinking.
-pub(super) fn resize(ink: Raster<f32>, scale: f64) -> Raster<f32> {
+pub(super) fn resize(ink: Raster<f32>, noise: f64, scale: f64) -> Raster<f32> {
     let size = |n: usize| ((n as f64 * scale).round() as u32).max(1);
     let (width, height) = (size(ink.width()), size(ink.height()));
     let filter = if scale > 1.0 { FilterType::CatmullRom } else { FilterType::Triangle };
     let resized = Raster::from_image(resize_image(&ink.into_image(), width, height, filter));
-    let resized = if scale > 1.0 { smooth(resized, SOFTENING as f32) } else { resized };
+    let resized = if scale > 1.0 && noise == 0.0 { smooth(resized, SOFTENING as f32) } else { resized };
     resized.map(|i| i.clamp(0.0, 1.0))
 }
