@@ -7,7 +7,7 @@ use super::line::fit_line;
 use super::samples::Samples;
 use super::segmentation::{Kind, Piece, near};
 use crate::drawing::Segment;
-use kurbo::{Line, ParamCurveNearest, Point, Vec2};
+use kurbo::{CubicBez, Line, ParamCurveNearest, Point, Vec2};
 
 /// Pieces that meet at a larger angle than this (18 degrees) make a corner.
 const CORNER: f64 = 0.31;
@@ -258,9 +258,14 @@ fn segments(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance:
     pairs.map(|b| cubic(samples, Piece { from: b[0].0, to: b[1].0, ..piece }, b[0].1, b[1].1)).collect()
 }
 
+/// The cubic of one piece between its joints. Where points are no line at all, as in a tangle, least squares may want
+/// handles that lead far away: none is longer than the piece.
 fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
     let ends = Ends { start: from.point, end: to.point, start_tangent: from.tangent, end_tangent: to.tangent };
-    Segment::Cubic(fit_cubic(samples, piece.from, piece.to, &ends, 8).curve)
+    let CubicBez { p0, p1, p2, p3 } = fit_cubic(samples, piece.from, piece.to, &ends, 8).curve;
+    let longest = (samples.arc[piece.to] - samples.arc[piece.from]).max((p3 - p0).hypot());
+    let held = |from: Point, to: Point| from + (to - from) * (longest / (to - from).hypot().max(longest));
+    Segment::Cubic(CubicBez::new(p0, held(p0, p1), held(p3, p2), p3))
 }
 
 /// The arc between two joints, if it keeps to their tangents and to the samples.

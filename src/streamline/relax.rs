@@ -42,7 +42,7 @@ pub(super) fn relax(image: &LineImage, line: &mut Streamline, width: f64) {
 /// How far each point is from the middle of the line's ink, along its normal.
 ///
 /// Where another line runs in at a small angle, the ink widens to one side long before it is two lines' ink. There only
-/// the edge of the other side is the line's own: the one that runs on most evenly.
+/// the edge of the other side is the line's own: the one that runs on without a break, and most evenly.
 fn lateral(profiles: &[Option<Profile>], width: f64) -> Vec<f64> {
     let mut shifts: Vec<f64> = profiles.iter().map(|p| p.and_then(|p| p.shift(width)).unwrap_or(0.0)).collect();
     let is_wide =
@@ -57,7 +57,7 @@ fn lateral(profiles: &[Option<Profile>], width: f64) -> Vec<f64> {
                 let shift = |p: &Option<Profile>| p.and_then(|p| by(&p, width));
                 let before = once(Some(shifts[from - 1]));
                 let all: Vec<Option<f64>> = before.chain(run.iter().map(shift)).chain(once(Some(shifts[to]))).collect();
-                let steps = all.windows(2).map(|w| w[0].zip(w[1]).map_or(0.5 * width, |(a, b)| (b - a).abs()));
+                let steps = all.windows(2).map(|w| w[0].zip(w[1]).map_or(f64::INFINITY, |(a, b)| (b - a).abs()));
                 (steps.sum::<f64>(), run.iter().map(shift).collect::<Vec<_>>())
             });
             let (roughness, own) = if left.0 <= right.0 { left } else { right };
