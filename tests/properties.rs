@@ -129,7 +129,7 @@ fn a_quarter_turn_turns_the_strokes() {
 
 #[test]
 fn a_mirror_mirrors_the_strokes() {
-    on_all("mirrors", [0.8, 0.666], |drawing| {
+    on_all("mirrors", [0.8, 0.625], |drawing| {
         let plain = scan(drawing);
         let (width, height) = plain.gray.size();
         let mirrored = moved(&plain, width, height, |x, y| (width - 1 - x, y));

@@ -152,7 +152,7 @@ fn an_open_arrow_head_is_a_corner_at_the_end_of_a_shaft() {
     let cases = pairs(&pairs(&pairs(&[15.0, 20.0, 30.0, 45.0], &[5.0, 8.0]), &WIDTHS), &[0.0, 17.0, 90.0, 225.0]);
     figures(
         "open arrow heads",
-        0.757,
+        0.726,
         &cases,
         |&(((opening, size), width), turn)| {
             let tip = polar(CENTER, turn, 46.0);

@@ -8,7 +8,7 @@ use image::imageops::{FilterType, resize as resize_image};
 const THICK: f64 = 14.0;
 /// Lines thinner than this many pixels are enlarged, so that edges and directions can be told apart; with the lines of a
 /// scan its grain is enlarged as well, so there only thinner ones are.
-const THIN: f64 = 1.88;
+const THIN: f64 = 2.4;
 const THIN_ON_SCAN: f64 = 1.75;
 /// The largest raster that is enlarged, in pixels.
 const ENLARGE_LIMIT: usize = 30_000_000;
