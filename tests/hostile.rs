@@ -72,7 +72,7 @@ fn values_that_are_no_field() {
         // Everywhere, or in every fifth pixel of a field that is else horizontal and vertical.
         for every in [1, 5] {
             let mix = |good: Complex32| {
-                Raster::from_fn(width, height, |x, y| if dice(x, y) % every == 0 { value } else { good })
+                Raster::from_fn(width, height, |x, y| if dice(x, y).is_multiple_of(every) { value } else { good })
             };
             for (a, b) in [(mix(c0), mix(c2)), (mix(zero), Raster::filled(width, height, c2))] {
                 for confidence in [1.0, f32::NAN, f32::INFINITY, -1.0, 1e-30] {
@@ -116,7 +116,8 @@ fn a_field_that_an_observer_resized_is_refused() {
 
 #[test]
 fn a_line_image_that_an_observer_broke_is_refused() {
-    let breaks: [(&str, fn(&mut LineImage)); 9] = [
+    type Change = fn(&mut LineImage);
+    let breaks: [(&str, Change); 9] = [
         ("ink", |image| image.ink = Raster::filled(3, 3, 1.0)),
         ("mask", |image| image.mask = Raster::filled(100, 81, true)),
         ("depth", |image| image.depth = Raster::filled(0, 0, 1.0)),
@@ -143,7 +144,8 @@ fn a_streamline_that_an_observer_broke_is_refused() {
             Ok(true)
         }
     }
-    let breaks: [(&str, fn(&mut Streamline)); 3] = [
+    type Change = fn(&mut Streamline);
+    let breaks: [(&str, Change); 3] = [
         ("widths", |s| s.widths.truncate(1)),
         ("no points", |s| (s.points, s.widths) = (Vec::new(), Vec::new())),
         ("not finite", |s| s.points[0].x = f64::NAN),

@@ -12,6 +12,7 @@ use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
 use kurbo::{BezPath, Line, ParamCurve, Point, Shape, Vec2};
+use std::slice::from_ref;
 
 const CENTER: Point = Point::new(60.0, 60.0);
 const WIDTHS: [f64; 4] = [2.0, 3.0, 4.5, 7.0];
@@ -224,7 +225,7 @@ fn a_filled_arrow_head_is_a_filled_region_at_the_end_of_a_shaft() {
             let (drawn, found) = (&truth.fills[0].outline, &traced.fills[0].outline);
             let area = found.area().abs() / drawn.area().abs();
             ensure((area - 1.0).abs() <= 0.2, || format!("{area:.2} of the head's area"))?;
-            let apart = apart(&[found.clone()], &[drawn.clone()]);
+            let apart = apart(from_ref(found), from_ref(drawn));
             ensure(apart.mean <= 0.6, || format!("the head's outline: {apart:.3?}"))?;
             // The shaft begins where it was drawn and reaches the head.
             let (start, along) = (truth.strokes[0].centreline.start(), Vec2::from_angle(f64::to_radians(turn)));

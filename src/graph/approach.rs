@@ -80,7 +80,7 @@ impl Approach {
                 let hidden = |(line, width): &&(Line, f64)| {
                     line.nearest(p, 1e-6).distance_sq < (0.5 * width + CLEAR_OF_OTHERS).powi(2)
                 };
-                if near.iter().any(|other| hidden(other)) {
+                if near.iter().any(hidden) {
                     continue;
                 }
                 let covered = coverage(distance(&self.body, p), body, image.blur.max(0.3));

@@ -105,13 +105,13 @@ impl<'a> Coverage<'a> {
     }
 
     /// A pixel's place in [`Self::painted`].
-    fn from_corner(&self, x: i64, y: i64) -> (i64, i64) {
+    fn in_bounds(&self, x: i64, y: i64) -> (i64, i64) {
         (x - self.corner.0 * CELL as i64, y - self.corner.1 * CELL as i64)
     }
 
     /// Whether the pixel at a point lies under a streamline already.
     pub fn is_painted(&self, p: Point) -> bool {
-        let (x, y) = self.from_corner(floor(p.x), floor(p.y));
+        let (x, y) = self.in_bounds(floor(p.x), floor(p.y));
         self.painted.get(x, y).unwrap_or(true)
     }
 
@@ -126,7 +126,7 @@ impl<'a> Coverage<'a> {
             for y in cy - reach..=cy + reach {
                 for x in cx - reach..=cx + reach {
                     let d = Point::new(x as f64 + 0.5, y as f64 + 0.5) - *p;
-                    let (u, v) = self.from_corner(x, y);
+                    let (u, v) = self.in_bounds(x, y);
                     if d.hypot2() <= radius * radius && self.painted.get(u, v) == Some(false) {
                         self.painted[(u as usize, v as usize)] = true;
                         fresh += usize::from(self.image.mask.get(x, y) == Some(true));

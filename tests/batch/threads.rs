@@ -64,10 +64,11 @@ fn samples_and_textures_give_the_same_bytes_too() {
     for name in ["kettle.png", "leaf.jpg", "boat.png", "plan.png"] {
         desk.put(&format!("in/{name}"), fs::read(samples.join(name)).unwrap());
     }
-    let textures: [(&str, fn(u32, u32) -> u32); 6] = [
+    type Texture = fn(u32, u32) -> u32;
+    let textures: [(&str, Texture); 6] = [
         ("checkerboard", |x, y| 255 * ((x + y) % 2)),
         ("hatching", |x, y| if x % 7 < 2 || (x + 2 * y) % 11 < 2 { 0 } else { 255 }),
-        ("salt", |x, y| if dice(x, y) % 8 == 0 { 0 } else { 255 }),
+        ("salt", |x, y| if dice(x, y).is_multiple_of(8) { 0 } else { 255 }),
         ("grain", |x, y| dice(x, y) % 256),
         ("blobs", |x, y| if x % 6 < 3 && y % 6 < 3 { 0 } else { 255 }),
         ("steps", |x, y| if (x / 9 + y / 5) % 3 == 0 { 20 * (x % 9) } else { 255 }),
