@@ -76,7 +76,7 @@ fn add(sum: &mut [f64], ink: &Raster<f32>, centre: Point, normal: Vec2, line_wid
 }
 
 /// Ink of a blurred line of unit darkness at a distance from its middle.
-fn profile_at(x: f64, width: f64, blur: f64) -> f64 {
+pub(crate) fn profile_at(x: f64, width: f64, blur: f64) -> f64 {
     let edge = |d: f64| libm::erf(d / (blur * SQRT_2));
     0.5 * (edge(x + 0.5 * width) - edge(x - 0.5 * width))
 }

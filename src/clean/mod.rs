@@ -11,7 +11,7 @@ mod specks;
 mod threshold;
 mod width;
 
-pub(crate) use blur::unblurred_width;
+pub(crate) use blur::{profile_at, unblurred_width};
 pub(crate) use runs::runs;
 pub(crate) use threshold::LEAST_GRAIN;
 pub(crate) use width::is_ridge;

@@ -5,9 +5,8 @@
 //! The darkness of pen and line is free. The distance that explains the pixels best, in least squares, tells whether
 //! the two inks touch.
 
-use crate::clean::{LineImage, unblurred_width};
+use crate::clean::{LineImage, profile_at, unblurred_width};
 use kurbo::{Line, ParamCurveNearest, Point, Vec2};
-use std::f64::consts::SQRT_2;
 
 /// Distances are tried from this far past the line's middle, up to that far before it, in pen widths.
 const PAST: f64 = 0.25;
@@ -83,7 +82,7 @@ impl Approach {
                 if near.iter().any(hidden) {
                     continue;
                 }
-                let covered = coverage(distance(&self.body, p), body, image.blur.max(0.3));
+                let covered = profile_at(distance(&self.body, p), body, image.blur.max(0.3));
                 pixels.push(Pixel { along, across, covered, ink: f64::from(ink) });
             }
         }
@@ -107,7 +106,7 @@ fn misfit(pixels: &[Pixel], pen: f64, blur: f64, end: f64) -> f64 {
     let (mut bb, mut bp, mut pp, mut bi, mut pi, mut ii) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for pixel in pixels {
         let past = (end - pixel.along).max(0.0);
-        let of_pen = coverage(pixel.across.hypot(past), pen, blur) * (1.0 - pixel.covered);
+        let of_pen = profile_at(pixel.across.hypot(past), pen, blur) * (1.0 - pixel.covered);
         let (b, p, i) = (pixel.covered, of_pen, pixel.ink);
         (bb, bp, pp) = (bb + b * b, bp + b * p, pp + p * p);
         (bi, pi, ii) = (bi + b * i, pi + p * i, ii + i * i);
@@ -118,12 +117,6 @@ fn misfit(pixels: &[Pixel], pen: f64, blur: f64, end: f64) -> f64 {
     }
     let (body, pen) = ((bi * pp - pi * bp) / det, (pi * bb - bi * bp) / det);
     ii - body * bi - pen * pi
-}
-
-/// Ink of a line of unit darkness at a distance from its middle, under a blur.
-fn coverage(distance: f64, width: f64, blur: f64) -> f64 {
-    let edge = |d: f64| libm::erf(d / (blur * SQRT_2));
-    0.5 * (edge(distance + 0.5 * width) - edge(distance - 0.5 * width))
 }
 
 fn distance(chain: &[Line], p: Point) -> f64 {
