@@ -148,14 +148,7 @@ impl Vectorizer {
     }
 }
 
-/// The U-Net where it is built in, else the structure tensor.
-#[cfg(feature = "learned")]
+/// The U-Net.
 fn default_estimator() -> Result<Box<dyn FieldEstimator>> {
     Ok(Box::new(crate::estimate::UNet::built_in()?))
-}
-
-/// The U-Net where it is built in, else the structure tensor.
-#[cfg(not(feature = "learned"))]
-fn default_estimator() -> Result<Box<dyn FieldEstimator>> {
-    Ok(Box::new(crate::estimate::StructureTensor::default()))
 }

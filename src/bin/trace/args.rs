@@ -56,7 +56,7 @@ pub(crate) enum Command {
     /// Compare traces with the strokes that were drawn.
     Eval(EvalArgs),
     /// Train the network that predicts the field.
-    #[cfg(feature = "learned")]
+    #[cfg(feature = "train")]
     Train(TrainArgs),
     /// Trace many drawings into a folder; the same as more than one IN
     Batch(Box<TraceArgs>),
@@ -149,7 +149,7 @@ pub(crate) struct EvalArgs {
 }
 
 /// The arguments of `trace train`.
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 #[derive(Debug, Args)]
 pub(crate) struct TrainArgs {
     /// A TOML file with what the run is to be; everything has a default
@@ -189,12 +189,11 @@ pub(crate) struct TrainArgs {
 }
 
 /// Where the network runs.
-#[cfg(feature = "learned")]
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Network")]
 pub(crate) struct DeviceArgs {
-    /// What runs the network: `cpu` is the fastest on the CPU; `flex`, `ndarray` and `gpu` are backends of the tensor
-    /// library, of which the last two have to be built in
+    /// What runs the network: `cpu` is the program's own engine, the fastest on the CPU; `flex`, `ndarray` and `gpu`
+    /// are backends of the tensor library, which have to be built in
     #[arg(long, value_name = "DEVICE", default_value = "auto",
           value_parser = ["auto", "cpu", "flex", "ndarray", "gpu"])]
     pub(crate) device: String,
@@ -216,24 +215,18 @@ pub(crate) struct FieldSourceArgs {
 #[command(next_help_heading = "Network")]
 pub(crate) struct NetworkArgs {
     /// Weights of the network, in place of those that the program carries
-    #[cfg(feature = "learned")]
     #[arg(long, value_name = "FILE")]
     pub(crate) weights: Option<PathBuf>,
-    #[cfg(feature = "learned")]
     #[command(flatten)]
     pub(crate) device: DeviceArgs,
 }
 
-#[cfg(feature = "learned")]
 const DEFAULT_ESTIMATOR: &str = "unet";
-#[cfg(not(feature = "learned"))]
-const DEFAULT_ESTIMATOR: &str = "tensor";
 
 /// A source of fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Estimator {
     /// The trained network
-    #[cfg(feature = "learned")]
     Unet,
     /// The fourth-order structure tensor
     Tensor,
