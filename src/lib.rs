@@ -78,7 +78,7 @@ pub mod estimate;
 pub mod field;
 pub mod fit;
 pub mod graph;
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 pub mod ground_truth;
 pub mod hooks;
 pub mod inspect;
@@ -91,11 +91,10 @@ mod profile;
 pub mod raster;
 pub mod render;
 pub mod streamline;
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 pub mod synth;
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 pub mod train;
-#[cfg(feature = "learned")]
 pub mod unet;
 pub mod write;
 

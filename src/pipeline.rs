@@ -154,14 +154,7 @@ fn same_size(field: &PolyVectorField, image: &Raster<f32>) -> Result<()> {
     if field == image { Ok(()) } else { Err(Error::FieldSize { field, image }) }
 }
 
-/// The U-Net where it is built in, else the structure tensor.
-#[cfg(feature = "learned")]
+/// The U-Net.
 fn default_estimator() -> Result<Box<dyn FieldEstimator>> {
     Ok(Box::new(crate::estimate::UNet::built_in()?))
-}
-
-/// The U-Net where it is built in, else the structure tensor.
-#[cfg(not(feature = "learned"))]
-fn default_estimator() -> Result<Box<dyn FieldEstimator>> {
-    Ok(Box::new(crate::estimate::StructureTensor::default()))
 }

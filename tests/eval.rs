@@ -85,6 +85,7 @@ fn clean_drawings_are_traced_well() {
             assert!(figure(name) > 0.93 && figure(name) <= 1.0, "{name} in {drawing}");
         }
         assert!(figure("chamfer") < 0.3 && figure("ink_deg") < 3.0 && figure("s_per_mp") > 0.0, "{drawing}");
+        assert!(figure("field_s_per_mp") > 0.0 && figure("field_s_per_mp") < figure("s_per_mp"), "{drawing}");
         assert_eq!(figure("paths_ratio"), 1.0, "{drawing}");
     }
     assert!(drawings[1]["junction_deg"].is_null(), "there is no junction");

@@ -6,7 +6,7 @@ use common::draw::{line, scan, sheet};
 use fieldtrace::Error;
 use fieldtrace::clean::LineImage;
 use fieldtrace::drawing::{Color, Drawing};
-use fieldtrace::estimate::{FieldEstimator, StructureTensor};
+use fieldtrace::estimate::{FieldEstimator, StructureTensor, UNet};
 use fieldtrace::field::PolyVectorField;
 use fieldtrace::graph::StrokeGraph;
 use fieldtrace::hooks::{Observer, veto};
@@ -166,7 +166,7 @@ fn the_field_of_a_scan_has_its_size_and_its_directions() {
 
 #[test]
 fn an_own_field_and_an_own_estimator_serve() {
-    let by_estimator = vectorizer().with_estimator(StructureTensor::default()).trace(&cross()).unwrap();
+    let by_estimator = vectorizer().with_estimator(UNet::built_in().unwrap()).trace(&cross()).unwrap();
     assert_eq!(by_estimator, vectorizer().trace(&cross()).unwrap());
     let field = PolyVectorField::from_directions(80, 60, |_, _| Some((Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0))));
     let by_field = vectorizer().trace_with_field(&cross(), &field, &mut ()).unwrap();

@@ -70,8 +70,8 @@ fn one(words: &mut &[&str], allowed: &BTreeSet<String>) -> bool {
 fn metadata() -> Value {
     let mut command = Command::new(env!("CARGO"));
     command.args(["metadata", "--format-version", "1", "--offline", "--locked", "--filter-platform", &host()]);
-    if cfg!(feature = "learned") {
-        command.args(["--features", "learned"]);
+    if cfg!(feature = "train") {
+        command.args(["--features", "train"]);
     }
     let output = command.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -1,5 +1,5 @@
 //! `trace train`, and traces under the weights that it gives.
-#![cfg(feature = "learned")]
+#![cfg(feature = "train")]
 
 use std::fs;
 use std::path::Path;
@@ -50,7 +50,9 @@ fn a_run_stops_goes_on_and_gives_weights_to_trace_with() {
     fs::write(dir.join("tiny.toml"), TINY).unwrap();
     let said = done(&trace(dir, &["train", "tiny.toml", "-o", "whole", "--steps", "4"]));
     assert!(said.contains("step 4 of 4: done"), "{said}");
-    for file in ["best.bpk", "last.bpk", "metrics.csv", "curves.svg", "examples.png", "checkpoint/state.json"] {
+    for file in
+        ["best.safetensors", "last.safetensors", "metrics.csv", "curves.svg", "examples.png", "checkpoint/state.json"]
+    {
         assert!(dir.join("whole").join(file).is_file(), "{file}");
     }
     assert_eq!(metrics(&dir.join("whole")).len(), 3);
@@ -60,7 +62,7 @@ fn a_run_stops_goes_on_and_gives_weights_to_trace_with() {
     let before = metrics(&dir.join("whole"));
     done(&trace(dir, &["train", "-o", "whole", "--resume"]));
     assert_eq!(before, metrics(&dir.join("whole")));
-    done(&trace(dir, &["train", "tiny.toml", "-o", "more", "--from", "whole/best.bpk", "-q"]));
+    done(&trace(dir, &["train", "tiny.toml", "-o", "more", "--from", "whole/best.safetensors", "-q"]));
 
     let kettle = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/kettle.png");
     let kettle = kettle.to_str().unwrap();
@@ -68,10 +70,10 @@ fn a_run_stops_goes_on_and_gives_weights_to_trace_with() {
         done(&trace(dir, &[&["field", kettle, "-o", name], more].concat()));
         fs::read(dir.join(name)).unwrap()
     };
-    let own = field("own.npz", &["--weights", "whole/best.bpk"]);
+    let own = field("own.npz", &["--weights", "whole/best.safetensors"]);
     assert_ne!(own, field("built-in.npz", &[]));
     assert_ne!(own, field("tensor.npz", &["--estimator", "tensor"]));
-    refused(&trace(dir, &[kettle, "-o", "x.svg", "--weights", "missing.bpk"]), 1, "missing.bpk");
+    refused(&trace(dir, &[kettle, "-o", "x.svg", "--weights", "missing.safetensors"]), 1, "missing.safetensors");
     refused(&trace(dir, &[kettle, "-o", "x.svg", "--weights", "tiny.toml"]), 1, "tiny.toml");
     assert!(!dir.join("x.svg").exists());
 }

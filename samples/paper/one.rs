@@ -1,4 +1,4 @@
-//! One image of two primitives, learned by heart: `cargo run --release --example paper-one -- DIR`.
+//! One image of two primitives, learned by heart: `cargo run --release --features train --example paper-one -- DIR`.
 //!
 //! Writes the alignment error of each iteration to `DIR/metrics.csv` and pictures to `DIR/examples.png`.
 

@@ -1,4 +1,4 @@
-//! A rendering beside its true field: `cargo run --release --features learned --example truth -- OUT.png`.
+//! A rendering beside its true field: `cargo run --release --features train --example truth -- OUT.png`.
 
 use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
 use fieldtrace::ground_truth;

@@ -1,11 +1,9 @@
 //! From ink to a 2-PolyVector field.
 
 mod tensor;
-#[cfg(feature = "learned")]
 mod unet;
 
 pub use tensor::StructureTensor;
-#[cfg(feature = "learned")]
 pub use unet::UNet;
 
 use crate::cancel::Cancel;

@@ -7,12 +7,14 @@ use crate::error::Result;
 use crate::field::{Pixel, PolyVectorField, is_defined};
 use crate::raster::{Mask, Raster, runs};
 use crate::unet::engine::{Engine, Scratch, TileCells};
-use crate::unet::{Extractor, Features, Shown, UNetConfig, Weights, features};
+use crate::unet::{Backend, Extractor, Shown, UNetConfig, Weights};
+#[cfg(feature = "train")]
+use crate::unet::{Features, Within, features};
+#[cfg(feature = "train")]
 use burn::tensor::{Device, Tensor, TensorData};
 use num_complex::Complex32;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Largest side of the part of a tile that is kept, in pixels: the larger, the less is computed twice.
@@ -43,35 +45,33 @@ enum Runner {
     /// The crate's own inference on the CPU, only where there is ink.
     Engine(Box<Engine>),
     /// The tensor library on some device, tile by tile.
-    Burn(Box<crate::unet::UNet>, Device),
+    #[cfg(feature = "train")]
+    Library(Box<Within>, Device),
 }
 
 impl UNet {
-    /// The network of some weights, run by the crate's own engine on the CPU.
-    pub fn new(weights: &Weights) -> Self {
-        let engine = Engine::new(weights.config, &weights.model);
-        Self { config: weights.config, runner: Runner::Engine(Box::new(engine)) }
-    }
-
-    /// The network that the program carries.
+    /// The network that the program carries, run by the crate's own engine.
     ///
     /// # Errors
     /// [`crate::Error::Weights`] never, unless the program was built around a broken file.
     pub fn built_in() -> Result<Self> {
-        Ok(Self::new(&crate::unet::built_in(&Device::flex())?))
+        Self::new(&Weights::built_in()?, Backend::Engine)
     }
 
-    /// The network in a file that [`crate::unet::save`] wrote.
+    /// The network of some weights.
     ///
     /// # Errors
-    /// [`crate::Error::Weights`] when the file cannot be read or does not hold such a network.
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Ok(Self::new(&crate::unet::load(path, &Device::flex())?))
-    }
-
-    /// The network of some weights, run by the tensor library on the device that the weights are on.
-    pub fn on_device(weights: Weights, device: Device) -> Self {
-        Self { config: weights.config, runner: Runner::Burn(Box::new(weights.model), device) }
+    /// [`crate::Error::Weights`] when the weights are not all there.
+    pub fn new(weights: &Weights, backend: Backend) -> Result<Self> {
+        let config = weights.config();
+        let runner = match backend {
+            Backend::Engine => Runner::Engine(Box::new(Engine::new(weights)?)),
+            #[cfg(feature = "train")]
+            Backend::Library(device) => {
+                Runner::Library(Box::new(Within::new(weights.model(&device)?, &config, &device)), device)
+            }
+        };
+        Ok(Self { config, runner })
     }
 }
 
@@ -102,9 +102,10 @@ impl FieldEstimator for UNet {
                 };
                 tiles.par_iter().map(run).collect()
             }
-            Runner::Burn(model, device) => {
+            #[cfg(feature = "train")]
+            Runner::Library(network, device) => {
                 let run = |&at: &(usize, usize)| {
-                    tile(at).map_or_else(Vec::new, |t| t.by_burn(model, device, &ink, self.config))
+                    tile(at).map_or_else(Vec::new, |t| t.by_library(network, device, &ink, self.config))
                 };
                 tiles.iter().map(run).collect()
             }
@@ -238,13 +239,15 @@ impl<'a> Tile<'a> {
         pixels
     }
 
-    fn by_burn(&self, model: &crate::unet::UNet, device: &Device, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
+    #[cfg(feature = "train")]
+    fn by_library(&self, network: &Within, device: &Device, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
         let Features { channels, base } = features(&self.cut(ink), config.input);
         let (width, height) = self.size;
         let n = width * height;
         let data = TensorData::new(channels, [1, config.input.channels(), height, width]);
-        let output = model.forward(Tensor::from_data(data, device)).into_data();
-        let output = output.try_into_vec::<f32>().unwrap_or_else(|_| vec![0.0; 4 * n]);
+        let active = TensorData::new(self.cells.shares(), [1, 1, self.cells.rows, self.cells.columns]);
+        let output = network.forward(Tensor::from_data(data, device), &Tensor::from_data(active, device)).into_data();
+        let output = output.try_into_vec::<f32>().expect("the network computes in f32");
         let of_pixel = |i: usize| {
             let base = if base.is_empty() { [0.0; 4] } else { [0, 1, 2, 3].map(|k| base[k * n + i]) };
             let index = self.number(i % width, i / width)?;
@@ -281,10 +284,6 @@ mod tests {
     use crate::clean::clean;
     use crate::load::Scan;
     use crate::options::Options;
-    use crate::render::render;
-    use crate::synth;
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
 
     fn inked(ink: Raster<f32>) -> LineImage {
         let mask = ink.map(|i| i > 0.5);
@@ -293,45 +292,29 @@ mod tests {
         LineImage { ink, mask, depth, line_width: 3.0, scale: 1.0, ..clean(&paper, &Options::default()) }
     }
 
-    fn image(seed: u64, size: usize) -> LineImage {
-        let drawing = synth::drawing(&mut ChaCha8Rng::seed_from_u64(seed), size);
-        let ink = render(&drawing);
-        inked(ink)
-    }
-
-    fn weights() -> Weights {
-        let config = UNetConfig { width: 4, levels: 2, ..UNetConfig::default() };
-        let device = Device::flex();
-        Weights { config, model: config.init(&device, 7) }
+    /// Rings about a point, some of them cut off.
+    fn rings(width: usize, height: usize) -> LineImage {
+        inked(Raster::from_fn(width, height, |x, y| {
+            let r = (x as f32 - 60.0).hypot(y as f32 - 50.0);
+            (2.0 - (r.rem_euclid(40.0) - 20.0).abs()).clamp(0.0, 1.0)
+        }))
     }
 
     #[test]
     fn every_size_of_image_gets_a_field_on_its_ink() {
-        let net = UNet::new(&weights());
+        let net = UNet::built_in().unwrap();
         for (width, height) in [(1, 1), (7, 300), (64, 64), (301, 290)] {
-            let whole = image(4, 301);
-            let part = inked(Raster::from_fn(width, height, |x, y| whole.ink[(x, y)]));
-            let field = net.estimate(&part).unwrap();
+            let image = rings(width, height);
+            let field = net.estimate(&image).unwrap();
             assert_eq!(field.size(), (width, height));
-            assert!(part.mask.data().iter().zip(field.confidence().data()).all(|(m, c)| !m || *c > 0.0));
+            assert!(image.mask.data().iter().zip(field.confidence().data()).all(|(m, c)| !m || *c > 0.0));
         }
-    }
-
-    #[test]
-    fn the_engine_and_the_tensor_library_agree() {
-        let (weights, image) = (weights(), image(5, 290));
-        let engine = UNet::new(&weights).estimate(&image).unwrap();
-        let burn = UNet::on_device(weights, Device::flex()).estimate(&image).unwrap();
-        let pairs =
-            engine.c0().data().iter().zip(burn.c0().data()).chain(engine.c2().data().iter().zip(burn.c2().data()));
-        let mean = pairs.clone().map(|(a, b)| (a - b).norm()).sum::<f32>() / image.mask.count() as f32;
-        assert!(mean < 0.02, "{mean}");
     }
 
     #[test]
     fn blank_paper_has_no_field() {
         let blank = inked(Raster::filled(50, 40, 0.0));
-        let field = UNet::new(&weights()).estimate(&blank).unwrap();
+        let field = UNet::built_in().unwrap().estimate(&blank).unwrap();
         assert!(field.confidence().data().iter().all(|c| *c == 0.0));
     }
 }

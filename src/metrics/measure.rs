@@ -19,13 +19,15 @@ pub struct Measurement {
     pub lines: LineScore,
     /// Seconds that the trace took.
     pub seconds: f64,
+    /// Seconds of them that the field took.
+    pub field_seconds: f64,
     /// Pixels of the scan, in millions.
     pub megapixels: f64,
 }
 
 impl Measurement {
     /// The names of the figures.
-    pub const NAMES: [&str; 14] = [
+    pub const NAMES: [&str; 15] = [
         "ink_deg",
         "junction_deg",
         "f1_0.5",
@@ -39,11 +41,12 @@ impl Measurement {
         "iou",
         "paths_ratio",
         "segs_ratio",
+        "field_s_per_mp",
         "s_per_mp",
     ];
 
     /// The figures in the order of their names.
-    pub fn values(&self) -> [f64; 14] {
+    pub fn values(&self) -> [f64; 15] {
         let Self { field, lines, .. } = self;
         let [half, one, two] = lines.f1;
         [
@@ -60,6 +63,7 @@ impl Measurement {
             lines.iou,
             lines.paths_ratio,
             lines.segs_ratio,
+            self.field_seconds / self.megapixels,
             self.seconds / self.megapixels,
         ]
     }
@@ -81,18 +85,27 @@ pub fn measure(vectorizer: &Vectorizer, scan: &Scan, truth: &Truth) -> Result<Me
         field: truth.angular_error(&field)?,
         lines: truth.score(&to_svg(&drawing, &SvgOptions::default()))?,
         seconds,
+        field_seconds: seen.field_seconds,
         megapixels: (width * height) as f64 / 1e6,
     })
 }
 
-/// Keeps the field.
+/// Keeps the field and how long it took.
 #[derive(Default)]
 struct Seen {
+    cleaned: Option<Instant>,
     field: Option<PolyVectorField>,
+    field_seconds: f64,
 }
 
 impl Observer for Seen {
+    fn on_line_image(&mut self, _: &mut LineImage) -> Result<()> {
+        self.cleaned = Some(Instant::now());
+        Ok(())
+    }
+
     fn on_field(&mut self, _: &LineImage, field: &mut PolyVectorField) -> Result<()> {
+        self.field_seconds = self.cleaned.map_or(0.0, |start| start.elapsed().as_secs_f64());
         self.field = Some(field.clone());
         Ok(())
     }

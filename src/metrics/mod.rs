@@ -13,6 +13,7 @@
 //! | `purity` | the same the other way round: share of the traced length that keeps to one true stroke |
 //! | `iou` | inked pixels of both over inked pixels of either |
 //! | `paths_ratio`, `segs_ratio` | traced over true number of strokes, and of pieces; a circle is four pieces |
+//! | `field_s_per_mp` | seconds that the field of it took for each million pixels |
 //! | `s_per_mp` | seconds that the trace took for each million pixels |
 //!
 //! Centrelines are compared by samples half a pixel apart. A solid region of a trace counts as ink alone, and one of
@@ -32,7 +33,7 @@ mod overlap;
 mod tests;
 
 pub use field::AngularError;
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 pub(crate) use field::{pair, single};
 pub use measure::{Measurement, measure};
 pub use nodes::{Nodes, nodes};

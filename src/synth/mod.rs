@@ -24,6 +24,8 @@ struct Style {
     mix: f64,
     /// How large shapes are, 1 to 5.
     scale: f64,
+    /// Whether strokes are drawn by hand with a thin pen.
+    freehand: bool,
 }
 
 impl Style {
@@ -32,7 +34,9 @@ impl Style {
         let width = if rng.random_bool(0.8) { within(rng, 2.0, 5.0) } else { (within(rng, 0.0, 12f64.ln())).exp() };
         let mix = if rng.random_bool(0.6) { 0.0 } else { 0.35 };
         let scale = if rng.random_bool(0.3) { 1.0 } else { within(rng, 0.0, 5f64.ln()).exp() };
-        Self { width, mix, scale }
+        let freehand = rng.random_bool(0.25);
+        let width = if freehand { within(rng, 1.0, 3.5) } else { width };
+        Self { width, mix, scale, freehand }
     }
 
     fn pen(&self, rng: &mut impl Rng) -> f64 {

@@ -1,8 +1,8 @@
 //! What drawings are made of: single shapes, and ways for a new stroke to meet an old one.
 
 use super::Sheet;
-use super::shapes::{arc_from, bent, blob, heading, line, line_through, open, polygon, polyline, rectangle, round};
-use super::shapes::{smooth_chain, within};
+use super::shapes::{arc_from, bent, blob, freehand, heading, line, line_through, open, polygon, polyline};
+use super::shapes::{rectangle, round, smooth_chain, within};
 use crate::drawing::{Centreline, Segment};
 use kurbo::{Circle, Line, ParamCurveDeriv, Point, Vec2};
 use rand::Rng;
@@ -13,8 +13,11 @@ pub(super) fn motif(rng: &mut impl Rng, sheet: &mut Sheet) {
     if !sheet.drawing.strokes.is_empty() && rng.random_bool(0.45) {
         return meet(rng, sheet);
     }
-    match rng.random_range(0..22) {
-        20 | 21 => arrow(rng, sheet),
+    if sheet.style.freehand {
+        return sketch(rng, sheet);
+    }
+    match rng.random_range(0..24) {
+        20..24 => arrow(rng, sheet),
         0..11 => shape(rng, sheet),
         11 | 12 => star(rng, sheet),
         13 => arrow(rng, sheet),
@@ -45,6 +48,14 @@ fn shape(rng: &mut impl Rng, sheet: &mut Sheet) {
         10 => round(rng, p, 0.5 * scale),
         _ => blob(rng, p, 0.5 * scale),
     };
+    sheet.add(rng, centreline);
+}
+
+/// A stroke by hand, small ones as often as large ones.
+fn sketch(rng: &mut impl Rng, sheet: &mut Sheet) {
+    let (p, angle) = (sheet.place(rng), heading(rng));
+    let scale = sheet.style.scale * within(rng, 8f64.ln(), 90f64.ln()).exp();
+    let centreline = freehand(rng, p, angle, scale);
     sheet.add(rng, centreline);
 }
 
@@ -99,8 +110,12 @@ fn meet(rng: &mut impl Rng, sheet: &mut Sheet) {
                 open(vec![arc_from(start, across, length, bend)])
             }
         }
-        // T or Y: from it.
-        3..6 => bent(rng, p, across, length),
+        // T or Y: from it, or nearly so.
+        3..6 => {
+            let miss = if rng.random_bool(0.7) { 0.0 } else { within(rng, -0.8, 2.0) * sheet.style.width };
+            let start = p + miss * Vec2::from_angle(across);
+            if sheet.style.freehand { freehand(rng, start, across, length) } else { bent(rng, start, across, length) }
+        }
         // K: two from one point.
         6 => {
             let second = tangent + meeting_angle(rng);
@@ -148,8 +163,8 @@ fn star(rng: &mut impl Rng, sheet: &mut Sheet) {
 /// A corner with a stroke that ends in it: an arrow's head, a check box's tick, the top of a bishop.
 fn arrow(rng: &mut impl Rng, sheet: &mut Sheet) {
     let (p, angle) = (sheet.place(rng), heading(rng));
-    let half = if rng.random_bool(0.5) { FRAC_PI_2 * 0.5 } else { within(rng, 0.3, 1.3) };
-    let lean = if rng.random_bool(0.6) { 0.0 } else { within(rng, -0.5, 0.5) };
+    let half = if rng.random_bool(0.65) { FRAC_PI_2 * 0.5 } else { within(rng, 0.3, 1.3) };
+    let lean = if rng.random_bool(0.75) { 0.0 } else { within(rng, -0.5, 0.5) };
     let wing = sheet.style.scale * within(rng, 8.0, 30.0);
     let ends = [half, -half].map(|side| p + wing * Vec2::from_angle(angle + side));
     let wings = vec![Segment::Line(Line::new(ends[0], p)), Segment::Line(Line::new(p, ends[1]))];

@@ -8,7 +8,7 @@ use rand::Rng;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Longer sides that drawings are brought to, in pixels.
-const SIDES: (f64, f64) = (90.0, 440.0);
+const SIDES: (f64, f64) = (110.0, 600.0);
 
 /// A sheet of `size x size` pixels that looks on some part of a drawing: turned, mirrored, at some size, with a pen of
 /// its own, never wider than the drawing's at that size. `None` for a drawing without strokes.
@@ -98,7 +98,7 @@ mod tests {
             assert!((0.0..144.0).contains(&start.x) && (0.0..144.0).contains(&start.y), "{start:?}");
             let long = start.distance(segments[0].end());
             let scale = long / 50.0;
-            assert!((89.9..=440.1).contains(&(scale * 100.0)), "{scale}");
+            assert!((109.9..=600.1).contains(&(scale * 100.0)), "{scale}");
             let round = segments[segments.len() - 1].end().distance(segments[0].end());
             assert!((round - scale * 200f64.sqrt()).abs() < 0.01 * scale, "{round} {scale}");
             assert!(sheet.strokes[0].width >= 1.0 && sheet.strokes[0].width <= (4.0 * scale).max(1.0) * 1.8);

@@ -1,5 +1,6 @@
 //! Centrelines of single shapes.
 
+use super::noise::gaussian;
 use crate::drawing::{Centreline, Segment};
 use kurbo::{Arc, Circle, CubicBez, Line, Point, QuadBez, Vec2};
 use rand::Rng;
@@ -92,6 +93,30 @@ pub(super) fn polyline(rng: &mut impl Rng, start: Point, angle: f64, scale: f64)
         p = next;
         let turn = within(rng, 0.35, 2.6);
         angle += if rng.random_bool(0.3) { FRAC_PI_2 } else { turn } * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+    }
+    open(segments)
+}
+
+/// A stroke as a hand draws it: bends that change as it goes, here and there a sharp turn, and straight pieces of a few
+/// pixels between the points that were recorded.
+pub(super) fn freehand(rng: &mut impl Rng, start: Point, angle: f64, scale: f64) -> Centreline {
+    let step = within(rng, 1.5, 6.0);
+    let length = scale * within(rng, 0.5, 3.0);
+    // Lengths between sharp turns, and over which the bend changes.
+    let sharp = if rng.random_bool(0.4) { f64::INFINITY } else { within(rng, 6.0, 0.7 * scale + 8.0) };
+    let slow = within(rng, 6.0, 0.5 * scale + 8.0);
+    let tremor = if rng.random_bool(0.5) { 0.0 } else { within(rng, 0.0, 0.12) };
+    let (mut p, mut angle, mut bend, mut segments) = (start, angle, 0.0, Vec::new());
+    for _ in 0..(length / step).ceil() as usize {
+        let next = p + step * within(rng, 0.7, 1.3) * Vec2::from_angle(angle + tremor * gaussian(rng));
+        segments.push(Segment::Line(Line::new(p, next)));
+        p = next;
+        bend += (step / slow) * (4.0 * gaussian(rng) / slow - bend);
+        angle += bend * step;
+        if rng.random_bool((step / sharp).min(1.0)) {
+            angle += within(rng, 0.7, 2.9) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+            bend = 0.0;
+        }
     }
     open(segments)
 }

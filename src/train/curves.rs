@@ -16,7 +16,7 @@ const COLORS: [&str; 4] = ["#0072b2", "#56b4e9", "#d55e00", "#e69f00"];
 
 /// Which columns of the metrics a panel shows, both axes of numbers: steps across, logarithmic upwards.
 const PANELS: [(&str, &[&str]); 2] = [
-    ("loss", &["loss", "alignment"]),
+    ("loss", &["loss", "alignment", "clean_mse", "scan_mse"]),
     ("degrees", &["clean_ink_deg", "clean_junction_deg", "scan_ink_deg", "scan_junction_deg"]),
 ];
 

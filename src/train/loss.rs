@@ -5,7 +5,7 @@ use super::data::Sample;
 use burn::tensor::{Device, Tensor, TensorData};
 
 /// Angles in radians below which the angle term is a square instead of an absolute value.
-const SOFT: f64 = 0.01;
+const SOFT: f64 = 0.002;
 
 /// A batch on a device; all `[batch, _, side, side]`.
 #[derive(Clone, Debug)]

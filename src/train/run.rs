@@ -7,7 +7,8 @@ use super::loss::{Batch, Loss};
 use super::source::{Skipped, Source};
 use super::validate::{Validation, Validator};
 use crate::error::{Error, Result};
-use crate::unet::{self, UNet};
+use crate::unet::{UNet, Weights, save};
+use crate::write::write_file;
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
 use burn::tensor::Device;
@@ -95,18 +96,19 @@ impl Trainer {
                 if saved != run.config {
                     return fail(format!("{}: holds a run of another configuration", dir.display()));
                 }
+                forget_after(&dir.join(METRICS), state.step)?;
                 return Ok(Self { state, model, optimizer: moments, ..run });
             }
             Start::Fresh => None,
-            Start::BuiltIn => Some(unet::built_in(&device)?),
-            Start::From(path) => Some(unet::load(path, &device)?),
+            Start::BuiltIn => Some(Weights::built_in()?),
+            Start::From(path) => Some(Weights::read(path)?),
         };
         fs::create_dir_all(dir).map_err(|cause| Error::Write { path: dir.into(), cause })?;
         if let Some(weights) = weights {
-            if weights.config != run.config.network {
+            if weights.config() != run.config.network {
                 return fail("the weights to start from are of a network of another shape".into());
             }
-            run.model = weights.model;
+            run.model = weights.model(&device)?;
         }
         Ok(run)
     }
@@ -204,23 +206,34 @@ impl Trainer {
         self.config.patience > 0 && self.state.stale >= self.config.patience
     }
 
-    /// Writes a line of metrics, and the weights if they are the best so far; `last.bpk` is always written.
+    /// Writes a line of metrics, and the weights if they are the best so far; `last.safetensors` is always written.
     fn keep(&mut self, report: &Progress, validation: &Validation) -> Result<()> {
         self.state.sums = Default::default();
         let model = self.model.valid();
-        unet::save(&self.dir.join("last.bpk"), &self.config.network, &model)?;
+        save(&self.dir.join("last.safetensors"), &self.config.network, &model)?;
         self.state.stale += 1;
         if self.state.best.is_none_or(|best| validation.score() < best) {
             self.state.best = Some(validation.score());
             self.state.stale = 0;
-            unet::save(&self.dir.join("best.bpk"), &self.config.network, &model)?;
+            save(&self.dir.join("best.safetensors"), &self.config.network, &model)?;
             let device = self.device.clone().inner();
             self.validator.draw_examples(&model, &device, &self.dir.join("examples.png"))?;
         }
-        let path = self.dir.join("metrics.csv");
+        let path = self.dir.join(METRICS);
         append_metrics(&path, report, validation).map_err(|cause| Error::Write { path: path.clone(), cause })?;
         super::curves::draw(&path, &self.dir.join("curves.svg"))
     }
+}
+
+/// The file of metrics in a run's directory.
+const METRICS: &str = "metrics.csv";
+
+/// Drops the lines of metrics that a killed run wrote after its last checkpoint: those steps are done again.
+fn forget_after(path: &Path, step: usize) -> Result<()> {
+    let Ok(text) = fs::read_to_string(path) else { return Ok(()) };
+    let done = |line: &&str| line.split(',').next().and_then(|n| n.parse().ok()).is_none_or(|n: usize| n <= step);
+    let kept: String = text.lines().filter(done).flat_map(|line| [line, "\n"]).collect();
+    write_file(path, kept.as_bytes())
 }
 
 const ERRORS: [&str; 5] = ["ink_deg", "junction_deg", "mse", "smoothness", "ink_share"];

@@ -1,7 +1,7 @@
 //! Training of a very small network.
 
 use super::*;
-use crate::unet::{Input, UNet, UNetConfig};
+use crate::unet::{Input, UNet, UNetConfig, Weights};
 use burn::store::{BurnpackStore, ModuleSnapshot};
 use burn::tensor::{Device, Tensor};
 use std::path::Path;
@@ -72,7 +72,41 @@ fn a_resumed_run_ends_where_an_unbroken_one_does() {
     assert_eq!(without_seconds(csv(&whole)), without_seconds(csv(&broken)));
     let curves = std::fs::read_to_string(whole.path().join("curves.svg")).unwrap();
     assert!(curves.contains("<polyline") && curves.contains("scan"));
-    assert!(whole.path().join("best.bpk").is_file() && whole.path().join("last.bpk").is_file());
+    assert!(whole.path().join("best.safetensors").is_file() && whole.path().join("last.safetensors").is_file());
+}
+
+#[test]
+fn a_killed_run_tells_no_step_twice() {
+    let [dir, aside] = [0, 1].map(|_| tempfile::tempdir().unwrap());
+    let resume = || Trainer::new(tiny(), dir.path(), &Device::flex(), &Start::Resume).unwrap();
+    train(tiny(), dir.path(), |p| p.step < 4);
+    let (checkpoint, older) = (dir.path().join("checkpoint"), aside.path().join("checkpoint"));
+    std::fs::rename(&checkpoint, &older).unwrap();
+    std::fs::create_dir(&checkpoint).unwrap();
+    for file in std::fs::read_dir(&older).unwrap() {
+        let file = file.unwrap();
+        std::fs::copy(file.path(), checkpoint.join(file.file_name())).unwrap();
+    }
+    let metrics = || {
+        let text = std::fs::read_to_string(dir.path().join("metrics.csv")).unwrap();
+        text.lines().map(|l| l.split(',').next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    resume().run(|_| true).unwrap();
+    assert_eq!(metrics(), ["step", "3", "6"]);
+    // As if it had been killed on its way, after the metrics but before the checkpoint.
+    std::fs::remove_dir_all(&checkpoint).unwrap();
+    std::fs::rename(&older, &checkpoint).unwrap();
+    resume().run(|_| true).unwrap();
+    assert_eq!(metrics(), ["step", "3", "6"]);
+}
+
+#[test]
+fn a_loss_that_is_not_a_number_stops_the_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let config = TrainConfig { rate: 1e30, warmup: 1, ..tiny() };
+    let mut trainer = Trainer::new(config, dir.path(), &Device::flex(), &Start::Fresh).unwrap();
+    let error = trainer.run(|_| true).unwrap_err().to_string();
+    assert!(error.contains("not a number") && error.contains("lower rate"), "{error}");
 }
 
 #[test]
@@ -89,7 +123,7 @@ fn runs_that_cannot_start_say_why() {
     refused(tiny(), dir.path(), Start::Fresh, "already");
     let other = tempfile::tempdir().unwrap();
     refused(tiny(), other.path(), Start::BuiltIn, "another shape");
-    refused(tiny(), other.path(), Start::From("missing.bpk".into()), "missing.bpk");
+    refused(tiny(), other.path(), Start::From("missing.safetensors".into()), "missing.safetensors");
     refused(TrainConfig { svgs: Some("missing".into()), ..tiny() }, other.path(), Start::Fresh, "missing");
 }
 
@@ -206,17 +240,18 @@ fn configurations_that_cannot_work_are_named() {
 #[test]
 fn saved_weights_give_the_same_field_in_half_precision() {
     let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("w.bpk");
+    let path = dir.path().join("w.safetensors");
     let config = tiny().network;
     let device = Device::flex();
     let model = config.init(&device, 5);
     crate::unet::save(&path, &config, &model).unwrap();
-    let loaded = crate::unet::load(&path, &device).unwrap();
-    assert_eq!(loaded.config, config);
+    let loaded = Weights::read(&path).unwrap();
+    assert_eq!(loaded.config(), config);
     let x = Tensor::random([1, config.input.channels(), 8, 8], burn::tensor::Distribution::Default, &device);
-    let difference = (model.forward(x.clone()) - loaded.model.forward(x)).abs().max().into_scalar::<f32>();
+    let difference =
+        (model.forward(x.clone()) - loaded.model(&device).unwrap().forward(x)).abs().max().into_scalar::<f32>();
     assert!(difference < 1e-2, "{difference}");
     std::fs::write(&path, "nothing").unwrap();
-    let error = crate::unet::load(&path, &device).unwrap_err().to_string();
-    assert!(error.contains("w.bpk"), "{error}");
+    let error = Weights::read(&path).unwrap_err().to_string();
+    assert!(error.contains("w.safetensors"), "{error}");
 }

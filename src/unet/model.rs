@@ -1,6 +1,6 @@
 //! The network: Taktasheva et al. 2019, section 4.
 
-use super::features::Input;
+use super::config::{EPSILON, UNetConfig};
 use burn::module::{Initializer, Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, PaddingConfig2d};
@@ -10,55 +10,15 @@ use burn::tensor::ops::{InterpolateMode, InterpolateOptions, MaxPoolOptions};
 use burn::tensor::{Device, Tensor, TensorData};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
-
-/// Shape of a network.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct UNetConfig {
-    /// Channels of the first level; each level down has twice as many.
-    pub width: usize,
-    /// Number of poolings.
-    pub levels: usize,
-    /// Side of the square of pixels that the first level takes as one, 1 or 2: input pixels become channels, and
-    /// the head gives each its own coefficients. 1 is the paper's network; 2 costs a quarter.
-    pub patch: usize,
-    /// What the network is shown.
-    pub input: Input,
-    /// Share of the newest batch in the norms' running statistics. Crops differ much from one another, so the
-    /// default averages over many batches; 1 fits training on one image.
-    pub momentum: f64,
-}
-
-impl Default for UNetConfig {
-    fn default() -> Self {
-        Self { width: 16, levels: 3, patch: 2, input: Input::Tensor, momentum: 0.03 }
-    }
-}
 
 impl UNetConfig {
-    /// The network of the paper.
-    pub fn paper() -> Self {
-        Self { width: 16, levels: 4, patch: 1, input: Input::Ink, ..Self::default() }
-    }
-
-    /// Image sides have to be multiples of this many pixels.
-    pub fn multiple(&self) -> usize {
-        self.patch << self.levels
-    }
-
     /// A network with fresh weights, the same for the same seed whatever else draws random numbers.
     pub fn init(&self, device: &Device, seed: u64) -> UNet {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let width = |level: usize| self.width << level;
-        let cells = self.patch * self.patch;
-        let mut down = vec![Block::new(self, [self.input.channels() * cells, width(0)], device, &mut rng)];
-        down.extend((1..=self.levels).map(|l| Block::new(self, [width(l - 1), width(l)], device, &mut rng)));
-        let mut up = Vec::new();
-        up.extend(
-            (0..self.levels).rev().map(|l| Block::new(self, [width(l + 1) + width(l), width(l)], device, &mut rng)),
-        );
-        let head = Conv2dConfig::new([width(0), 4 * cells], [1, 1]).with_initializer(Initializer::Zeros);
+        let down = self.down().into_iter().map(|channels| Block::new(self, channels, device, &mut rng)).collect();
+        let joined = |[low, skip, output]: [usize; 3]| [low + skip, output];
+        let up = self.up().into_iter().map(|all| Block::new(self, joined(all), device, &mut rng)).collect();
+        let head = Conv2dConfig::new([self.width, 4 * self.cells()], [1, 1]).with_initializer(Initializer::Zeros);
         let head = filled(head.init(device), device, &mut rng);
         UNet { down, up, head, patch: self.patch }
     }
@@ -83,13 +43,13 @@ impl Block {
             let config = Conv2dConfig::new(channels, [3, 3]).with_bias(false).with_initializer(Initializer::Zeros);
             filled(config.with_padding(PaddingConfig2d::Explicit(1, 1, 1, 1)).init(device), device, rng)
         };
-        let norm = || BatchNormConfig::new(output).with_momentum(config.momentum).init(device);
+        let norm = || BatchNormConfig::new(output).with_epsilon(EPSILON).with_momentum(config.momentum).init(device);
         Self { conv1: conv([input, output]), norm1: norm(), conv2: conv([output, output]), norm2: norm() }
     }
 
-    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let x = relu(self.norm1.forward(self.conv1.forward(x)));
-        relu(self.norm2.forward(self.conv2.forward(x)))
+    fn forward(&self, x: Tensor<4>, seen: &mut impl FnMut(Tensor<4>) -> Tensor<4>) -> Tensor<4> {
+        let x = seen(relu(self.norm1.forward(self.conv1.forward(x))));
+        seen(relu(self.norm2.forward(self.conv2.forward(x))))
     }
 }
 
@@ -119,24 +79,69 @@ impl UNet {
     /// From `[batch, channels, height, width]` to `[batch, 4, height, width]`: `Re c0`, `Im c0`, `Re c2`, `Im c2`, less
     /// the field that [`super::Features`] starts from. Sides are multiples of [`UNetConfig::multiple`].
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let mut x = unshuffle(x, self.patch);
+        self.forward_seen(x, &mut |x| x)
+    }
+
+    /// The same, every feature map but the head's being replaced by what `seen` makes of it.
+    fn forward_seen(&self, x: Tensor<4>, seen: &mut impl FnMut(Tensor<4>) -> Tensor<4>) -> Tensor<4> {
+        let mut x = seen(unshuffle(x, self.patch));
         let mut skips = Vec::new();
         for (level, block) in self.down.iter().enumerate() {
             if level > 0 {
                 skips.push(x.clone());
                 x = max_pool2d(x, MaxPoolOptions::new([2, 2]).with_stride([2, 2]));
             }
-            x = block.forward(x);
+            x = block.forward(x, seen);
         }
         for block in &self.up {
             let [_, _, height, width] = x.dims();
-            let mut options = InterpolateOptions::new(InterpolateMode::Nearest);
-            options.output_size = Some([2 * height, 2 * width]);
             let skip = skips.pop().expect("one skip a level");
-            x = block.forward(Tensor::cat(vec![interpolate(x, options), skip], 1));
+            x = block.forward(Tensor::cat(vec![resized(x, [2 * height, 2 * width]), skip], 1), seen);
         }
         shuffle(self.head.forward(x), self.patch)
     }
+}
+
+/// A network that computes only where it is told to and takes the rest for blank paper, as the engine does.
+#[derive(Clone, Debug)]
+pub struct Within {
+    model: UNet,
+    /// What each feature map holds on blank paper, `[1, channels, 1, 1]`, in the order in which they come about.
+    blank: Vec<Tensor<4>>,
+}
+
+impl Within {
+    /// For a network, its input having `channels`, and images whose sides are multiples of `multiple`.
+    pub fn new(model: UNet, config: &UNetConfig, device: &Device) -> Self {
+        // Three pixels a side at the lowest level, of which the middle one sees no border.
+        let side = 3 * config.multiple();
+        let mut blank = Vec::new();
+        model.forward_seen(Tensor::zeros([1, config.input.channels(), side, side], device), &mut |x| {
+            let [_, _, height, width] = x.dims();
+            let middle = x.narrow(2, height / 2, 1).narrow(3, width / 2, 1);
+            blank.push(middle.clone());
+            middle.repeat(&[1, 1, height, width])
+        });
+        Self { model, blank }
+    }
+
+    /// Like [`UNet::forward`] on one image; `active`, `[1, 1, _, _]`, is 1 on the cells of [`UNetConfig::multiple`] pixels
+    /// that are computed and else 0. The output elsewhere means nothing.
+    pub fn forward(&self, x: Tensor<4>, active: &Tensor<4>) -> Tensor<4> {
+        let mut blank = self.blank.iter();
+        self.model.forward_seen(x, &mut |x| {
+            let [_, _, height, width] = x.dims();
+            let blank = blank.next().expect("one a feature map").clone();
+            (x - blank.clone()) * resized(active.clone(), [height, width]) + blank
+        })
+    }
+}
+
+/// Each pixel repeated, up to a height and a width.
+fn resized(x: Tensor<4>, size: [usize; 2]) -> Tensor<4> {
+    let mut options = InterpolateOptions::new(InterpolateMode::Nearest);
+    options.output_size = Some(size);
+    interpolate(x, options)
 }
 
 /// `[n, c, h, w]` to `[n, c p p, h / p, w / p]`: the pixels of a square become channels.
@@ -162,6 +167,7 @@ fn shuffle(x: Tensor<4>, p: usize) -> Tensor<4> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::unet::Input;
     use burn::tensor::{Distribution, Int};
 
     #[test]

@@ -10,7 +10,6 @@ fn estimate(bencher: Bencher, estimator: &dyn FieldEstimator) {
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench(|| estimator.estimate(&image));
 }
 
-#[cfg(feature = "learned")]
 #[divan::bench]
 fn network(bencher: Bencher) {
     estimate(bencher, &fieldtrace::estimate::UNet::built_in().expect("the built-in weights can be read"));

@@ -9,7 +9,7 @@ mod interrupt;
 mod report;
 mod source;
 mod target;
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 mod train;
 mod vectorize;
 mod watch;
@@ -19,8 +19,7 @@ use clap::Parser;
 use failure::Failure;
 use std::process::ExitCode;
 
-/// Training makes many large temporaries, which this allocator keeps for the next step.
-#[cfg(feature = "learned")]
+/// The stages and training make many large temporaries, which this allocator keeps for the next.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
@@ -40,7 +39,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Batch(args)) => batch::run(&args),
         None if batch::is_meant(&cli.trace) => batch::run(&cli.trace),
         Some(Command::Eval(args)) => eval::run(&args),
-        #[cfg(feature = "learned")]
+        #[cfg(feature = "train")]
         Some(Command::Train(args)) => train::run(&args),
         None => vectorize::run(&cli.trace),
     }

@@ -2,8 +2,9 @@
 
 use crate::args::{self, CleanArgs, Estimator, FieldSourceArgs, FitArgs, NetworkArgs};
 use fieldtrace::Result;
-use fieldtrace::estimate::{FieldEstimator, StructureTensor};
+use fieldtrace::estimate::{FieldEstimator, StructureTensor, UNet};
 use fieldtrace::pipeline::Vectorizer;
+use fieldtrace::unet::{Backend, Weights};
 
 /// What traces under the options and with the estimator that were asked for.
 pub(crate) fn vectorizer(source: &FieldSourceArgs, clean: &CleanArgs, fit: Option<&FitArgs>) -> Result<Vectorizer> {
@@ -11,26 +12,13 @@ pub(crate) fn vectorizer(source: &FieldSourceArgs, clean: &CleanArgs, fit: Optio
 }
 
 /// The estimator that was asked for.
-#[cfg_attr(not(feature = "learned"), allow(unused_variables))]
 pub(crate) fn estimator(kind: Estimator, network: &NetworkArgs) -> Result<Box<dyn FieldEstimator>> {
-    match kind {
-        Estimator::Tensor => Ok(Box::new(StructureTensor::default())),
-        #[cfg(feature = "learned")]
-        Estimator::Unet => Ok(Box::new(unet(network)?)),
-    }
-}
-
-/// The network of some weights on some device.
-#[cfg(feature = "learned")]
-fn unet(args: &NetworkArgs) -> Result<fieldtrace::estimate::UNet> {
-    use fieldtrace::estimate::UNet;
-    use fieldtrace::unet;
-    let Some(device) = unet::device(&args.device.device)? else {
-        return args.weights.as_deref().map_or_else(UNet::built_in, UNet::from_file);
-    };
-    let weights = match &args.weights {
-        Some(path) => unet::load(path, &device)?,
-        None => unet::built_in(&device)?,
-    };
-    Ok(UNet::on_device(weights, device))
+    Ok(match kind {
+        Estimator::Tensor => Box::new(StructureTensor::default()),
+        Estimator::Unet => {
+            let backend = Backend::named(&network.device.device)?;
+            let weights = network.weights.as_deref().map_or_else(Weights::built_in, Weights::read)?;
+            Box::new(UNet::new(&weights, backend)?)
+        }
+    })
 }

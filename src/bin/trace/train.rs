@@ -3,11 +3,10 @@
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use crate::interrupt;
-use burn::tensor::Device;
 use fieldtrace::Error;
 use fieldtrace::cancel::Cancel;
 use fieldtrace::train::{Progress, Start, TrainConfig, Trainer};
-use fieldtrace::unet;
+use fieldtrace::unet::Backend;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::Path;
@@ -15,7 +14,7 @@ use std::path::Path;
 /// Trains from the start, from weights, or from where a run was stopped.
 pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of(&args.output.display().to_string(), &e);
-    let device = unet::device(&args.device.device).map_err(failed)?.unwrap_or_else(Device::flex);
+    let device = Backend::named(&args.device.device).map_err(failed)?.to_train();
     let config = config(args).map_err(failed)?;
     let start = match (&args.from, args.resume) {
         (_, true) => Start::Resume,
@@ -43,7 +42,10 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
         let (step, steps) = (trainer.step(), trainer.config().steps);
         let whole = step == steps;
         let how = if whole { "done" } else { "stopped; --resume goes on from here" };
-        eprintln!("trace: step {step} of {steps}: {how}; best weights in {}", args.output.join("best.bpk").display());
+        eprintln!(
+            "trace: step {step} of {steps}: {how}; best weights in {}",
+            args.output.join("best.safetensors").display()
+        );
     }
     Ok(())
 }

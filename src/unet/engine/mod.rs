@@ -8,11 +8,9 @@ mod conv;
 mod plane;
 mod squares;
 
-use super::model::{Block, UNet, UNetConfig};
-use burn::module::Param;
-use burn::nn::BatchNorm;
-use burn::nn::conv::Conv2d;
-use burn::tensor::Tensor;
+use super::config::{EPSILON, UNetConfig};
+use super::weights::{Numbers, Weights};
+use crate::error::Result;
 use conv::Conv;
 pub(crate) use plane::Cells as TileCells;
 use plane::{BLOCK, Plane};
@@ -27,7 +25,7 @@ pub(crate) struct Engine {
     up: Vec<[Conv; 2]>,
     head: Conv,
     /// What each plane holds on blank paper, in the order of [`Scratch`].
-    blank: Option<Vec<Vec<f32>>>,
+    blank: Vec<Vec<f32>>,
 }
 
 /// The feature maps of one tile; to be reused from tile to tile.
@@ -41,25 +39,30 @@ pub(crate) struct Scratch {
 
 impl Engine {
     /// Folds and packs the weights of a network.
-    pub fn new(config: UNetConfig, model: &UNet) -> Self {
-        let cells = config.patch * config.patch;
+    ///
+    /// # Errors
+    /// [`crate::Error::Weights`] when some are missing or of another shape than the network's.
+    pub fn new(weights: &Weights) -> Result<Self> {
+        let (config, numbers) = (weights.config(), weights.numbers()?);
         let stored = |n: usize| (0..n.next_multiple_of(BLOCK)).map(|i| (i < n).then_some(i)).collect::<Vec<_>>();
-        let width = |level: usize| config.width << level;
-        let input: Vec<_> = (0..config.input.channels() * cells).map(Some).collect();
-        let mut down = vec![block(&model.down[0], &input)];
-        down.extend((1..=config.levels).map(|l| block(&model.down[l], &stored(width(l - 1)))));
-        let up = model.up.iter().zip((0..config.levels).rev()).map(|(b, l)| {
-            let (low, skip) = (width(l + 1), width(l));
+        let mut down = Vec::new();
+        for (i, [input, output]) in config.down().into_iter().enumerate() {
+            let source = if i == 0 { (0..input).map(Some).collect() } else { stored(input) };
+            down.push(block(&numbers, &format!("down.{i}"), &source, output)?);
+        }
+        let mut up = Vec::new();
+        for (i, [low, skip, output]) in config.up().into_iter().enumerate() {
             let mut source = stored(low);
             source.extend(stored(skip).into_iter().map(|i| i.map(|i| low + i)));
-            block(b, &source)
-        });
-        let bias = model.head.bias.as_ref().map_or_else(|| vec![0.0; 4 * cells], numbers);
-        let up = up.collect();
-        let head = Conv::new(1, &numbers(&model.head.weight), &bias, &stored(config.width), false);
-        let mut engine = Self { config, arch: Arch::new(), down, up, head, blank: None };
-        engine.blank = Some(engine.blank_values());
-        engine
+            up.push(block(&numbers, &format!("up.{i}"), &source, output)?);
+        }
+        let outputs = 4 * config.cells();
+        let bias = numbers.get("head.bias", &[outputs])?;
+        let head = numbers.get("head.weight", &[outputs, config.width, 1, 1])?;
+        let head = Conv::new(1, &head, &bias, &stored(config.width), false);
+        let mut engine = Self { config, arch: Arch::new(), down, up, head, blank: Vec::new() };
+        engine.blank = engine.blank_values();
+        Ok(engine)
     }
 
     /// Computes the active cells of a tile.
@@ -95,8 +98,7 @@ impl Engine {
             scratch.planes = self.planes(cells.columns, cells.rows);
             scratch.size = size;
         }
-        let Some(blank) = &self.blank else { return };
-        for (plane, values) in scratch.planes.iter_mut().zip(blank) {
+        for (plane, values) in scratch.planes.iter_mut().zip(&self.blank) {
             let side = plane.width / cells.columns;
             cells.rim_runs(side, |x, y, n| {
                 plane.pixels_mut(x, y, n).chunks_exact_mut(values.len()).for_each(|p| p.copy_from_slice(values));
@@ -224,104 +226,24 @@ fn join(low: &Plane, skip: &Plane, to: &mut Plane, cells: &TileCells, side: usiz
     });
 }
 
-fn block(block: &Block, source: &[Option<usize>]) -> [Conv; 2] {
-    let first = folded(&block.conv1, &block.norm1, source);
-    let n = block.norm1.gamma.dims()[0];
-    let middle: Vec<_> = (0..first.output).map(|i| (i < n).then_some(i)).collect();
-    [first, folded(&block.conv2, &block.norm2, &middle)]
+/// The convolutions of a block by its name, from the stored channels that `source` names.
+fn block(numbers: &Numbers, name: &str, source: &[Option<usize>], output: usize) -> Result<[Conv; 2]> {
+    let first = folded(numbers, name, 1, source, output)?;
+    let middle: Vec<_> = (0..first.output).map(|i| (i < output).then_some(i)).collect();
+    Ok([first, folded(numbers, name, 2, &middle, output)?])
 }
 
 /// `gamma (W x - mean) / sqrt(var + epsilon) + beta` as one convolution.
-fn folded(conv: &Conv2d, norm: &BatchNorm, source: &[Option<usize>]) -> Conv {
-    let mut weights = numbers(&conv.weight);
-    let [gamma, beta] = [&norm.gamma, &norm.beta].map(numbers);
-    let [mean, var] = [&norm.running_mean, &norm.running_var].map(|s| data(s.value()));
-    let scale: Vec<f32> = gamma.iter().zip(&var).map(|(g, v)| g / (v + norm.epsilon as f32).sqrt()).collect();
+fn folded(numbers: &Numbers, block: &str, number: usize, source: &[Option<usize>], output: usize) -> Result<Conv> {
+    let inputs = source.iter().flatten().count();
+    let mut weights = numbers.get(&format!("{block}.conv{number}.weight"), &[output, inputs, 3, 3])?;
+    let norm = |what: &str| numbers.get(&format!("{block}.norm{number}.{what}"), &[output]);
+    let (gamma, beta, mean, var) = (norm("gamma")?, norm("beta")?, norm("running_mean")?, norm("running_var")?);
+    let scale: Vec<f32> = gamma.iter().zip(&var).map(|(g, v)| g / (v + EPSILON as f32).sqrt()).collect();
     let bias: Vec<f32> = beta.iter().zip(&mean).zip(&scale).map(|((b, m), s)| b - m * s).collect();
-    let filter = weights.len() / scale.len();
-    weights.chunks_exact_mut(filter).zip(&scale).for_each(|(w, s)| w.iter_mut().for_each(|w| *w *= s));
-    Conv::new(3, &weights, &bias, source, true)
-}
-
-fn numbers<const D: usize>(param: &Param<Tensor<D>>) -> Vec<f32> {
-    data(param.val())
-}
-
-fn data<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
-    tensor.into_data().try_into_vec().expect("weights are f32")
+    weights.chunks_exact_mut(9 * inputs).zip(&scale).for_each(|(w, s)| w.iter_mut().for_each(|w| *w *= s));
+    Ok(Conv::new(3, &weights, &bias, source, true))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::unet::Input;
-    use burn::tensor::{Device, Distribution, TensorData};
-
-    /// A network whose norms are not the identity.
-    fn network(config: &UNetConfig) -> UNet {
-        let device = Device::flex();
-        device.seed(3);
-        let mut model = config.init(&device.clone().autodiff(), 3);
-        for _ in 0..3 {
-            let side = 2 * config.multiple();
-            let x = Tensor::<4>::random([2, config.input.channels(), side, side], Distribution::Default, &device);
-            let x = Tensor::from_data(x.into_data(), &device.clone().autodiff());
-            let _ = model.forward(x);
-        }
-        model = burn::module::Module::valid(&model);
-        model
-    }
-
-    fn compare(config: UNetConfig) -> f32 {
-        let device = Device::flex();
-        let model = network(&config);
-        let (columns, rows, m) = (3, 2, config.multiple());
-        let (width, height) = (columns * m, rows * m);
-        let shape = [1, config.input.channels(), height, width];
-        let x = Tensor::<4>::random(shape, Distribution::Default, &device).into_data();
-        let input = x.clone().try_into_vec::<f32>().unwrap();
-        let truth = model.forward(Tensor::from_data(TensorData::new(input.clone(), shape), &device));
-        let truth = truth.into_data().try_into_vec::<f32>().unwrap();
-        let cells = TileCells::new(columns, rows, vec![true; columns * rows]);
-        let mut worst = 0.0f32;
-        let n = width * height;
-        let mut seen = 0;
-        Engine::new(config, &model).run(&mut Scratch::default(), &input, &cells, |x, y, values| {
-            seen += 1;
-            for (k, v) in values.into_iter().enumerate() {
-                worst = worst.max((v - truth[k * n + y * width + x]).abs());
-            }
-        });
-        assert_eq!(seen, n);
-        worst
-    }
-
-    #[test]
-    fn the_engine_agrees_with_the_tensor_library() {
-        for (width, levels, patch, input) in [(16, 2, 2, Input::Tensor), (8, 2, 1, Input::Ink), (12, 1, 2, Input::Ink)]
-        {
-            let worst = compare(UNetConfig { width, levels, patch, input, ..UNetConfig::default() });
-            assert!(worst < 1e-4, "w{width} d{levels} p{patch}: {worst}");
-        }
-    }
-
-    #[test]
-    fn what_is_not_computed_counts_as_blank() {
-        let config = UNetConfig { width: 16, levels: 2, patch: 2, input: Input::Ink, ..UNetConfig::default() };
-        let engine = Engine::new(config, &network(&config));
-        let (n, m) = (17, config.multiple());
-        let side = n * m;
-        // A dot in the middle cell; cells near it are computed in one run, all cells in the other.
-        let mut input = vec![0.0f32; side * side];
-        input[(side / 2) * side + side / 2] = 1.0;
-        let field = |active: Vec<bool>| {
-            let mut out = vec![[0.0f32; 4]; side * side];
-            let cells = TileCells::new(n, n, active);
-            engine.run(&mut Scratch::default(), &input, &cells, |x, y, v| out[y * side + x] = v);
-            out[(side / 2) * side + side / 2]
-        };
-        let near = |i: usize| (i % n).abs_diff(n / 2) <= 5 && (i / n).abs_diff(n / 2) <= 5;
-        let (all, some) = (field(vec![true; n * n]), field((0..n * n).map(near).collect()));
-        assert!(all.iter().zip(&some).all(|(a, b)| (a - b).abs() < 1e-4), "{all:?} {some:?}");
-    }
-}
+mod tests;

@@ -67,6 +67,12 @@ impl Cells {
         Self { columns, rows, active, rim }
     }
 
+    /// 1 for each cell that is computed and 0 for the others, row by row.
+    #[cfg(feature = "train")]
+    pub fn shares(&self) -> Vec<f32> {
+        self.active.iter().map(|&a| if a { 1.0 } else { 0.0 }).collect()
+    }
+
     /// Calls `f(x, y, n)` for each horizontal run of computed pixels at a level whose cells are `side` pixels wide.
     pub fn runs(&self, side: usize, f: impl FnMut(usize, usize, usize)) {
         self.runs_of(&self.active, side, f);

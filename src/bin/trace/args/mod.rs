@@ -7,7 +7,7 @@ mod strokes;
 
 pub(crate) use batch::BatchArgs;
 pub(crate) use input::LoadArgs;
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 pub(crate) use network::DeviceArgs;
 pub(crate) use network::{DEFAULT_ESTIMATOR, Estimator, FieldSourceArgs, NetworkArgs};
 pub(crate) use strokes::{CleanArgs, FitArgs, options};
@@ -64,7 +64,7 @@ pub(crate) enum Command {
     /// Compare traces with the strokes that were drawn.
     Eval(EvalArgs),
     /// Train the network that predicts the field.
-    #[cfg(feature = "learned")]
+    #[cfg(feature = "train")]
     Train(TrainArgs),
     /// Trace many drawings into a folder; the same as more than one IN
     Batch(Box<TraceArgs>),
@@ -157,7 +157,7 @@ pub(crate) struct EvalArgs {
 }
 
 /// The arguments of `trace train`.
-#[cfg(feature = "learned")]
+#[cfg(feature = "train")]
 #[derive(Debug, Args)]
 pub(crate) struct TrainArgs {
     /// A TOML file with what the run is to be; everything has a default

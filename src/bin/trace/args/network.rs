@@ -1,16 +1,14 @@
 //! Where the field of directions comes from.
 
 use clap::{Args, ValueEnum};
-#[cfg(feature = "learned")]
 use std::path::PathBuf;
 
 /// Where the network runs.
-#[cfg(feature = "learned")]
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Network")]
 pub(crate) struct DeviceArgs {
-    /// What runs the network: `cpu` is the fastest on the CPU; `flex`, `ndarray` and `gpu` are backends of the tensor
-    /// library, of which the last two have to be built in
+    /// What runs the network: `cpu` is the program's own engine, the fastest on the CPU; `flex`, `ndarray` and `gpu`
+    /// are backends of the tensor library, which have to be built in
     #[arg(long, value_name = "DEVICE", default_value = "auto",
           value_parser = ["auto", "cpu", "flex", "ndarray", "gpu"])]
     pub(crate) device: String,
@@ -32,25 +30,19 @@ pub(crate) struct FieldSourceArgs {
 #[command(next_help_heading = "Network")]
 pub(crate) struct NetworkArgs {
     /// Weights of the network, in place of those that the program carries
-    #[cfg(feature = "learned")]
-    #[arg(long, value_name = "FILE")]
+        #[arg(long, value_name = "FILE")]
     pub(crate) weights: Option<PathBuf>,
-    #[cfg(feature = "learned")]
-    #[command(flatten)]
+        #[command(flatten)]
     pub(crate) device: DeviceArgs,
 }
 
-#[cfg(feature = "learned")]
 pub(crate) const DEFAULT_ESTIMATOR: &str = "unet";
-#[cfg(not(feature = "learned"))]
-pub(crate) const DEFAULT_ESTIMATOR: &str = "tensor";
 
 /// A source of fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Estimator {
     /// The trained network
-    #[cfg(feature = "learned")]
-    Unet,
+        Unet,
     /// The fourth-order structure tensor
     Tensor,
 }

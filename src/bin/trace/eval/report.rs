@@ -110,15 +110,17 @@ fn heading(group: &Group) -> String {
     if group.kind.is_empty() { group.estimator.into() } else { format!("{}, {}", group.estimator, group.kind) }
 }
 
-/// The mean of each figure over the rows where it is defined; the time is that of all pixels together.
+/// The mean of each figure over the rows where it is defined; times are those of all pixels together.
 fn means(rows: &[&Row]) -> [f64; Measurement::NAMES.len()] {
     let values: Vec<_> = rows.iter().map(|r| r.measurement.values()).collect();
-    let mut means = std::array::from_fn(|i| {
+    let mut means: [f64; Measurement::NAMES.len()] = std::array::from_fn(|i| {
         let defined: Vec<f64> = values.iter().map(|v| v[i]).filter(|v| v.is_finite()).collect();
         defined.iter().sum::<f64>() / defined.len() as f64
     });
     let total = |f: fn(&Measurement) -> f64| rows.iter().map(|r| f(&r.measurement)).sum::<f64>();
-    means[Measurement::NAMES.len() - 1] = total(|m| m.seconds) / total(|m| m.megapixels);
+    let [.., field, whole] = &mut means;
+    *field = total(|m| m.field_seconds) / total(|m| m.megapixels);
+    *whole = total(|m| m.seconds) / total(|m| m.megapixels);
     means
 }
 
