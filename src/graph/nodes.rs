@@ -218,8 +218,10 @@ impl Solver<'_> {
         !folds && (touches_ink(a) || touches_ink(b))
     }
 
-    /// Which ends continue in which: least turn first.
+    /// Which ends continue in which: least turn first. Two ends that meet alone always do, since their courses can
+    /// be misread where both walks went round the corner.
     fn pairs(&self, node: &Node) -> Vec<Pair> {
+        let alone = node.bodies.is_empty() && node.ends.len() == 2;
         let mut candidates = Vec::new();
         for (i, &a) in node.ends.iter().enumerate() {
             for &b in &node.ends[..i] {
@@ -230,6 +232,7 @@ impl Solver<'_> {
         let mut pairs: Vec<Pair> = Vec::new();
         for (turn, a, b) in candidates {
             let most = match (node.bodies.is_empty(), pairs.is_empty()) {
+                _ if alone => f64::INFINITY,
                 (false, _) => ACROSS_BODY,
                 (true, true) => LARGEST_TURN,
                 (true, false) => LATER_PAIR,
