@@ -24,6 +24,9 @@ pub(super) struct Place {
     pub at: f64,
 }
 
+/// How far apart, in line widths, the walks along the arms of a blunt corner may end.
+const BLUNT: f64 = 1.2;
+
 /// What an end meets.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Touch {
@@ -170,6 +173,7 @@ pub(super) fn contacts(image: &LineImage, lines: &[Streamline], ends: &[Option<E
     let of_end = |end: &Option<End>| end.iter().flat_map(|end| finder.of_end(end)).collect::<Vec<_>>();
     let mut contacts: Vec<Contact> = ends.par_iter().flat_map_iter(of_end).collect();
     finder.join_overlaps(&mut contacts);
+    contacts.extend(finder.blunt_corners(&contacts));
     contacts
 }
 
@@ -321,6 +325,35 @@ impl Finder<'_> {
             return Some(Contact { end: end_id(end.line, end.side), touch, point: foot, misfit: distance });
         }
         None
+    }
+
+    /// Ends that met nothing but have another such end beside them, with ink between: the arms of a corner that is
+    /// blunt, or of a hairpin.
+    fn blunt_corners(&self, contacts: &[Contact]) -> Vec<Contact> {
+        let mut met = vec![false; self.ends.len()];
+        contacts.iter().for_each(|c| met[c.end] = true);
+        let free = self.ends.iter().flatten().filter(|e| e.stop == Stop::InkEnd && !met[end_id(e.line, e.side)]);
+        let free: Vec<&End> = free.collect();
+        let places = free.iter().enumerate().map(|(i, e)| GeomWithData::new([e.point.x, e.point.y], i));
+        let tree = RTree::bulk_load(places.collect());
+        let reach = BLUNT * self.image.line_width.max(1.5);
+        let nearest = |end: &End| {
+            let others = tree.nearest_neighbor_iter(&[end.point.x, end.point.y]).map(|near| free[near.data]);
+            let mut others = others.take_while(|o| (o.point - end.point).hypot() <= reach);
+            others.find(|o| (o.line, o.side) != (end.line, end.side))
+        };
+        let corner = |end: &&End| {
+            let other = nearest(end)?;
+            let mutual = nearest(other).is_some_and(|back| (back.line, back.side) == (end.line, end.side));
+            let point = end.point.midpoint(other.point);
+            (mutual && self.image.is_inked(end.point, other.point, end.core)).then(|| Contact {
+                end: end_id(end.line, end.side),
+                touch: Touch::End(end_id(other.line, other.side)),
+                point,
+                misfit: (point - end.point).hypot(),
+            })
+        };
+        free.iter().filter_map(corner).collect()
     }
 
     /// Two walks from opposite sides that ran into each other's ink, each stopping on the other's body, are one
