@@ -98,7 +98,7 @@ fn the_table_has_a_row_for_each_family_and_for_all() {
     let table = text(folder.path(), &["."]);
     for (name, count) in [("a", "1"), ("b", "1"), ("all", "2")] {
         let [row] = &rows(&table, name)[..] else { panic!("{name} in {table}") };
-        assert_eq!((row[1], row.len()), (count, 16), "{table}");
+        assert_eq!((row[1], row.len()), (count, 17), "{table}");
     }
     assert!(rows(&table, "a-cross").is_empty());
     let files = text(folder.path(), &[".", "--files"]);
@@ -162,6 +162,36 @@ fn json_goes_to_a_file_beside_the_table() {
     assert_eq!(rows(&table, "all").len(), 1);
     let report: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("figures.json")).unwrap()).unwrap();
     assert_eq!(report["means"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn a_report_has_the_figures_and_the_worst_traces() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join("out").join(name);
+    // Strokes that its ink does not show.
+    picture(&svg(OTHER), 200, &folder.path().join("a-cross.scan.png"));
+    picture(&svg(OTHER), 200, &folder.path().join("b-arc.scan.png"));
+    text(folder.path(), &[".", "--kind", "scan", "--report", "out", "--worst", "1"]);
+    let page = fs::read_to_string(path("report.md")).unwrap();
+    for family in ["| a | 1 |", "| b | 1 |", "| all | 2 |"] {
+        assert!(page.contains(family), "no {family} in {page}");
+    }
+    assert!(page.contains("1. **a-cross**: junction_f1 0.000") && !page.contains("**b-arc**"), "{page}");
+    let picture = image::open(path("unet-scan-1-a-cross.png")).unwrap().to_rgb8();
+    assert!(picture.pixels().any(|p| p.0[0] > 200 && p.0[1] < 60), "what was traced is in colour");
+    assert_eq!(fs::read_dir(path("")).unwrap().count(), 2);
+    text(folder.path(), &[".", "--report", "all"]);
+    assert_eq!(fs::read_dir(folder.path().join("all")).unwrap().count(), 3);
+    assert_eq!(run(folder.path(), &[".", "--worst", "1"]).status.code(), Some(2), "of which report?");
+    failed_late(folder.path(), &[".", "--report", "a-cross.svg"], "a-cross.svg: ");
+}
+
+/// Ends with an error about a file, after the table.
+#[track_caller]
+fn failed_late(folder: &Path, words: &[&str], reason: &str) {
+    let output = run(folder, words);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && stderr.contains(reason) && !stderr.contains("panicked"), "{stderr}");
 }
 
 #[test]

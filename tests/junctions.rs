@@ -161,6 +161,19 @@ fn a_corner_is_one_stroke_of_two_lines() {
 }
 
 #[test]
+fn a_blunt_corner_is_one_stroke() {
+    // Two arms and a short piece across, whose length is given in widths.
+    let cases = pairs(&cases(&[10.0, 20.0, 40.0, 60.0], &[2.0, 2.5, 3.0, 4.0], &OFFSETS[..2]), &[0.4, 0.6, 0.8, 1.0]);
+    let cases = pairs(&cases, &[0.0, 15.0, 45.0, 100.0]);
+    sweep("blunt corners", 0.0, &cases, |&(((opening, width, offset), across), turn)| {
+        let tip = |side: f64| polar(CENTER, turn + 90.0, side * 0.5 * across * width) + offset;
+        let arm = |side: f64| polar(tip(side), turn + side * 0.5 * opening, 38.0);
+        let truth = [polyline(&[arm(-1.0), tip(-1.0), tip(1.0), arm(1.0)], false, width)];
+        like(&truth, &traced(&truth), 0.15 * width, 0.8 * width + 0.4)
+    });
+}
+
+#[test]
 fn a_rectangle_is_one_closed_stroke_of_four_lines() {
     let cases = cases(&[0.0, 5.0, 15.0, 30.0, 45.0], &WIDTHS, &OFFSETS);
     sweep("rectangles", 0.933, &cases, |&(turn, width, offset)| {

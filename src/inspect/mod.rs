@@ -3,12 +3,14 @@
 //! Each `*_overlay` function gives an SVG in pixels of the input, with the lightened input inside it, and
 //! [`to_png`] makes it a picture. [`DebugDir`] is an observer that writes one of each stage to a folder.
 
+mod comparison;
 mod debug_dir;
 mod field;
 mod graph;
 mod overlay;
 mod strokes;
 
+pub use comparison::comparison_overlay;
 pub use debug_dir::DebugDir;
 pub use field::{field_overlay, ink_picture};
 pub use graph::{graph_overlay, streamlines_overlay};

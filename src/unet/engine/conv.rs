@@ -51,21 +51,6 @@ impl Conv {
         Self { side, input: source.len(), output: padded, weights: packed(weights, taps), squares, bias, relu }
     }
 
-    /// What it gives where all pixels around read the same.
-    pub fn of_constant(&self, input: &[f32]) -> Vec<f32> {
-        let mut output = self.bias.clone();
-        let blocks = self.weights.chunks_exact(self.side * self.side * self.input * BLOCK);
-        for (sums, block) in output.chunks_exact_mut(BLOCK).zip(blocks) {
-            for (weights, value) in block.chunks_exact(BLOCK).zip(input.iter().cycle()) {
-                sums.iter_mut().zip(weights).for_each(|(s, w)| *s += w * value);
-            }
-        }
-        if self.relu {
-            output.iter_mut().for_each(|o| *o = o.max(0.0));
-        }
-        output
-    }
-
     /// Computes the active pixels of `to`, both planes having cells of `side` pixels.
     pub fn run(&self, arch: Arch, from: &Plane, to: &mut Plane, cells: &Cells, side: usize) {
         debug_assert!(from.channels == self.input && to.channels == self.output);

@@ -143,6 +143,12 @@ pub(crate) struct EvalArgs {
     /// Also write all figures to a file; `-` is standard output, in place of the table
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    /// Also write report.md to a folder: the figures by family, and pictures of the worst traces over their truth
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// How many of the worst traces the report shows
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "report")]
+    pub(crate) worst: usize,
     #[command(flatten)]
     pub(crate) load: LoadArgs,
     #[command(flatten)]

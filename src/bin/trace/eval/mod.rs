@@ -1,6 +1,7 @@
 //! `trace eval IN...`: how good traces are.
 
 mod cases;
+mod pages;
 mod report;
 
 use crate::args::{self, EvalArgs};
@@ -9,8 +10,9 @@ use crate::source;
 use crate::target;
 use cases::Case;
 use fieldtrace::drawing::Drawing;
+use fieldtrace::inspect::{comparison_overlay, to_png};
 use fieldtrace::load::{LoadOptions, Scan, load};
-use fieldtrace::metrics::{Measurement, Truth, measure};
+use fieldtrace::metrics::{Truth, measure};
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::write::write_file;
 use report::{Report, Row};
@@ -43,7 +45,19 @@ pub(crate) fn run(args: &EvalArgs) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         write(path, report.json())?;
     }
+    if let Some(folder) = &args.report {
+        pages::write(folder, &report, args.worst, |row| picture(row, &vectorizers, args))?;
+    }
     Ok(())
+}
+
+/// A trace, made once more, over its truth.
+fn picture(row: &Row, vectorizers: &[(String, Vectorizer)], args: &EvalArgs) -> Result<Vec<u8>, Failure> {
+    let Loaded { scan, drawing, truth } = read(&row.case, &args.load.options()).map_err(Failure::File)?;
+    let ran = vectorizers.iter().find(|(name, _)| *name == row.estimator);
+    let (_, vectorizer) = ran.expect("an estimator with a row");
+    let picture = vectorizer.trace(&scan).and_then(|t| to_png(&comparison_overlay(&scan, &drawing, &t, truth.pen())));
+    picture.map_err(|e| Failure::of(&target::name(row.case.input()), &e))
 }
 
 /// The tracers to compare, with the names of their estimators.
@@ -63,26 +77,42 @@ fn vectorizers(args: &EvalArgs) -> Result<Vec<(String, Vectorizer)>, Failure> {
 
 /// The figures of one drawing under each estimator, or why there are none.
 fn rows(case: &Case, vectorizers: &[(String, Vectorizer)], args: &EvalArgs) -> Result<Vec<Row>, String> {
-    let name = target::name(case.input());
-    let reason = |e: fieldtrace::Error| Failure::of(&name, &e).to_string();
-    let (scan, drawing) = read(case, &args.load.options()).map_err(reason)?;
-    let truth = drawing.and_then(|d| Truth::new(&d, scan.gray.size()));
-    let Some(truth) = truth else { return Err(format!("{}: has no strokes", target::name(&case.truth))) };
+    let Loaded { scan, truth, .. } = read(case, &args.load.options())?;
     let row = |(estimator, vectorizer): &(String, Vectorizer)| {
-        let measurement: Measurement = measure(vectorizer, &scan, &truth).map_err(reason)?;
+        let measurement = measure(vectorizer, &scan, &truth).map_err(|e| reason(case.input(), &e))?;
         Ok(Row { case: case.clone(), estimator: estimator.clone(), measurement })
     };
     vectorizers.iter().map(row).collect()
 }
 
 /// What is traced, and the true strokes at its size.
-fn read(case: &Case, options: &LoadOptions) -> fieldtrace::Result<(Scan, Option<Drawing>)> {
-    let Some(raster) = &case.raster else {
-        let input = load(&case.truth, options)?;
-        return Ok((input.scan, input.drawing));
+struct Loaded {
+    scan: Scan,
+    drawing: Drawing,
+    truth: Truth,
+}
+
+/// Reads a case, or tells why it cannot be compared.
+fn read(case: &Case, options: &LoadOptions) -> Result<Loaded, String> {
+    let of = |path: &Path, options: &LoadOptions| load(path, options).map_err(|e| reason(case.input(), &e));
+    let (scan, drawing) = match &case.raster {
+        None => {
+            let input = of(&case.truth, options)?;
+            (input.scan, input.drawing)
+        }
+        Some(raster) => {
+            let scan = of(raster, options)?.scan;
+            let (width, height) = scan.gray.size();
+            let size = u32::try_from(width.max(height)).ok();
+            (scan, of(&case.truth, &LoadOptions { size, ..options.clone() })?.drawing)
+        }
     };
-    let scan = load(raster, options)?.scan;
-    let (width, height) = scan.gray.size();
-    let size = u32::try_from(width.max(height)).ok();
-    Ok((scan, load(&case.truth, &LoadOptions { size, ..options.clone() })?.drawing))
+    let drawing = drawing.unwrap_or_default();
+    let truth = Truth::new(&drawing, scan.gray.size());
+    let truth = truth.ok_or_else(|| format!("{}: has no strokes", target::name(&case.truth)))?;
+    Ok(Loaded { scan, drawing, truth })
+}
+
+fn reason(input: &Path, error: &fieldtrace::Error) -> String {
+    Failure::of(&target::name(input), error).to_string()
 }

@@ -21,12 +21,15 @@ pub(super) struct Report {
 }
 
 /// Rows that are averaged.
-struct Group<'a> {
-    estimator: &'a str,
-    kind: &'a str,
-    family: &'a str,
-    rows: Vec<&'a Row>,
+pub(super) struct Group<'a> {
+    pub estimator: &'a str,
+    pub kind: &'a str,
+    pub family: &'a str,
+    pub rows: Vec<&'a Row>,
 }
+
+/// The family that stands for all.
+pub(super) const ALL: &str = "all";
 
 impl Report {
     /// A block for each estimator and kind of raster: with `files` a row for each drawing, then one for each family
@@ -76,7 +79,8 @@ impl Report {
         format!("{:#}\n", json!({ "means": means, "drawings": drawings, "left_out": self.left_out }))
     }
 
-    fn groups(&self) -> Vec<Group<'_>> {
+    /// The rows of each estimator, kind of raster and family, where there are several, and then of [`ALL`].
+    pub fn groups(&self) -> Vec<Group<'_>> {
         let keys = |row: &Row| (row.estimator.clone(), row.case.kind.clone());
         let mut blocks: Vec<(String, String)> = self.rows.iter().map(keys).collect();
         // Estimators stay in the order of the command line.
@@ -96,7 +100,7 @@ impl Report {
                 let of = |family| rows().filter(|r| r.case.family() == family).collect();
                 groups.extend(families.iter().map(|&family| Group { estimator, kind, family, rows: of(family) }));
             }
-            groups.push(Group { estimator, kind, family: "all", rows: rows().collect() });
+            groups.push(Group { estimator, kind, family: ALL, rows: rows().collect() });
         }
         groups
     }
@@ -106,12 +110,13 @@ fn in_block(row: &Row, group: &Group) -> bool {
     row.estimator == group.estimator && row.case.kind == group.kind
 }
 
-fn heading(group: &Group) -> String {
+/// The estimator and kind of a group.
+pub(super) fn heading(group: &Group) -> String {
     if group.kind.is_empty() { group.estimator.into() } else { format!("{}, {}", group.estimator, group.kind) }
 }
 
 /// The mean of each figure over the rows where it is defined; times are those of all pixels together.
-fn means(rows: &[&Row]) -> [f64; Measurement::NAMES.len()] {
+pub(super) fn means(rows: &[&Row]) -> [f64; Measurement::NAMES.len()] {
     let values: Vec<_> = rows.iter().map(|r| r.measurement.values()).collect();
     let mut means: [f64; Measurement::NAMES.len()] = std::array::from_fn(|i| {
         let defined: Vec<f64> = values.iter().map(|v| v[i]).filter(|v| v.is_finite()).collect();
