@@ -7,7 +7,7 @@ use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::drawing::Color;
 use crate::options::Options;
-use crate::streamline::{STEP, Streamline};
+use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use rayon::prelude::*;
@@ -246,8 +246,9 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Drops strokes shorter than `least` that have a free end.
+    /// Drops strokes shorter than `least` that have a free end, and what is left of lines that were cut within a node.
     fn drop_short(&mut self, least: f64) {
+        let line_width = self.image.line_width;
         let graph = &mut self.out.graph;
         let mut trails = std::mem::take(&mut self.out.trails);
         trails.retain(|trail| {
@@ -257,7 +258,9 @@ impl<'a> Assembly<'a> {
                 .iter()
                 .filter_map(|(e, _)| graph.edge_endpoints(*e))
                 .any(|(a, b)| [a, b].iter().any(|&n| graph[n].kind == JunctionKind::FreeEnd));
-            let keep = length >= least || !free;
+            let ends = trail.edges.iter().filter_map(|(e, _)| graph.edge_endpoints(*e));
+            let within = ends.into_iter().all(|(a, b)| a == b) && length < line_width;
+            let keep = (length >= least || !free) && !within;
             if !keep {
                 trail.edges.iter().for_each(|(e, _)| drop(graph.remove_edge(*e)));
             }
@@ -321,7 +324,14 @@ fn kept(image: &LineImage, line: &Streamline, end: &End, node: &Node) -> usize {
     let nearest = (0..=stretch).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
     let id = end_id(end.line, end.side);
     let runs_on = node.pairs.iter().any(|p| p.ends.contains(&id) && p.turn < SMOOTH);
-    let radius = if is_free || runs_on { 0.6 * STEP } else { INSIDE * image.line_width };
+    // Where a walk took another line's arm, its last points belong to neither.
+    let radius = if end.stop == Stop::Cut {
+        image.line_width
+    } else if is_free || runs_on {
+        0.6 * STEP
+    } else {
+        INSIDE * image.line_width
+    };
     let mut k = nearest;
     while k < n - 1 && distance(k) < radius {
         k += 1;

@@ -16,6 +16,7 @@ mod nodes;
 mod pens;
 mod rejoin;
 mod settle;
+mod swaps;
 mod taper;
 mod trim;
 
@@ -232,6 +233,10 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, c
         settle::settle(image, &mut lines);
     }
     merge::merge(image, &mut lines);
+    let swaps = swaps::cuts(image, &lines);
+    if !swaps.is_empty() {
+        lines = rejoin::cut_lines(&lines, &swaps);
+    }
     let mut resolved = Resolved::new(image, &lines, cancel)?;
     let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
     if !cuts.is_empty() {

@@ -26,7 +26,7 @@ pub(super) fn cuts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]
 
 fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Node) -> Option<Place> {
     let [body] = node.bodies[..] else { return None };
-    let sides = [-1, 1].map(|step| side(image, &lines[body.line], body, step));
+    let sides = [-1, 1].map(|step| course(image, &lines[body.line], body, step, AWAY));
     let [Some(back), Some(ahead)] = sides else { return None };
     let through = continuation(&back, &ahead, node.position, image.line_width);
     let stems = node.ends.iter().filter_map(|&e| ends[e].as_ref());
@@ -36,8 +36,8 @@ fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Nod
     (best + MARGIN < through && best < LARGEST_TURN).then_some(body)
 }
 
-/// The course of a line towards a place, from one side.
-fn side(image: &LineImage, line: &Streamline, place: Place, step: i64) -> Option<Tail> {
+/// The course of a line towards a place, from one side, as it is `away` line widths from there.
+pub(super) fn course(image: &LineImage, line: &Streamline, place: Place, step: i64, away: f64) -> Option<Tail> {
     let n = line.points.len() as i64;
     let count = |widths: f64| (widths * image.line_width / STEP) as i64;
     let at = |k: i64| -> Option<Point> {
@@ -45,7 +45,7 @@ fn side(image: &LineImage, line: &Streamline, place: Place, step: i64) -> Option
         let index = if line.closed { index.rem_euclid(n) } else { index };
         line.points.get(usize::try_from(index).ok()?).copied()
     };
-    let run: Vec<Point> = (count(AWAY)..count(AWAY + OVER)).map_while(at).collect();
+    let run: Vec<Point> = (count(away)..count(away + OVER)).map_while(at).collect();
     let oldest_first: Vec<Point> = run.into_iter().rev().collect();
     (oldest_first.len() > 5).then(|| Tail::fit(&oldest_first, 0.1)).flatten()
 }

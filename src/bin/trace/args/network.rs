@@ -30,9 +30,9 @@ pub(crate) struct FieldSourceArgs {
 #[command(next_help_heading = "Network")]
 pub(crate) struct NetworkArgs {
     /// Weights of the network, in place of those that the program carries
-        #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE")]
     pub(crate) weights: Option<PathBuf>,
-        #[command(flatten)]
+    #[command(flatten)]
     pub(crate) device: DeviceArgs,
 }
 
@@ -42,7 +42,7 @@ pub(crate) const DEFAULT_ESTIMATOR: &str = "unet";
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Estimator {
     /// The trained network
-        Unet,
+    Unet,
     /// The fourth-order structure tensor
     Tensor,
 }

@@ -1,0 +1,93 @@
+//! Lines that took each other's arms are cut.
+//!
+//! Where two lines run through shared ink, at a crossing or along a touch, both walks may come out by the other's
+//! arm. The four arms, as they run outside the shared ink, are compared: when another pairing turns less than the
+//! walks did, both lines are cut in the middle of it, and their parts are paired anew.
+
+use super::contacts::{LineIndex, Place, point_at};
+use super::nodes::continuation;
+use super::rejoin::course;
+use crate::clean::LineImage;
+use crate::streamline::{STEP, Streamline};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Lines nearer to each other than this, in line widths, share ink.
+const TOUCH: f64 = 0.6;
+/// Longest stretch of shared ink, in line widths.
+const LONGEST: f64 = 8.0;
+/// Parts of one line are different lines when they are this many line widths apart along it.
+const OWN: f64 = 6.0;
+/// Arms begin this many line widths outside the shared ink.
+const AWAY: f64 = 0.75;
+/// What another pairing must gain, radians.
+const MARGIN: f64 = 0.2;
+/// An arm that turns by more than this (35 degrees) does not continue another.
+const LARGEST_TURN: f64 = 0.61;
+
+/// A stretch of shared ink: first and last place on each of two lines.
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    a: [Place; 2],
+    b: [Place; 2],
+}
+
+/// The places at which lines should be cut.
+pub(super) fn cuts(image: &LineImage, lines: &[Streamline]) -> Vec<Place> {
+    let index = LineIndex::new(lines);
+    let of_line = |i: usize| shared(image, lines, &index, i).into_iter().filter_map(|s| cut(image, lines, s));
+    let cuts: Vec<[Place; 2]> = (0..lines.len()).into_par_iter().flat_map_iter(of_line).collect();
+    cuts.concat()
+}
+
+/// The stretches that a line shares with those after it, and with later parts of its own.
+fn shared(image: &LineImage, lines: &[Streamline], index: &LineIndex, i: usize) -> Vec<Shared> {
+    let line = &lines[i];
+    let mut open: BTreeMap<(usize, usize), Shared> = BTreeMap::new();
+    let mut done = Vec::new();
+    let own = OWN * image.line_width / STEP;
+    // Where a width was measured, the line is alone.
+    for k in (0..line.points.len()).filter(|&k| line.widths[k].is_nan()) {
+        let here = Place { line: i, at: k as f64 };
+        for (place, ..) in index.near(line.points[k], TOUCH * image.line_width) {
+            if place.line < i || (place.line == i && place.at < here.at + own) {
+                continue;
+            }
+            // Passes of one line are told apart by where on it they are.
+            let pass = |s: &Shared| (place.at - s.b[1].at).abs() * STEP <= 2.0 * image.line_width;
+            let goes_on = |s: &Shared| here.at - s.a[1].at <= 4.0 && pass(s);
+            let same_line = open.range((place.line, 0)..=(place.line, usize::MAX));
+            let found = same_line.filter(|(_, s)| goes_on(s)).map(|(key, _)| *key).next();
+            match found.and_then(|key| open.get_mut(&key)) {
+                Some(stretch) => (stretch.a[1], stretch.b[1]) = (here, place),
+                None => {
+                    let number = done.len() + open.len();
+                    open.insert((place.line, number), Shared { a: [here; 2], b: [place; 2] });
+                }
+            }
+        }
+        let over: Vec<_> = open.iter().filter(|(_, s)| here.at - s.a[1].at > 4.0).map(|(key, _)| *key).collect();
+        done.extend(over.iter().filter_map(|key| open.remove(key)));
+    }
+    done.extend(open.into_values());
+    done
+}
+
+/// Where both lines are to be cut, if another pairing of their arms is better.
+fn cut(image: &LineImage, lines: &[Streamline], shared: Shared) -> Option<[Place; 2]> {
+    if (shared.a[1].at - shared.a[0].at) * STEP > LONGEST * image.line_width {
+        return None;
+    }
+    let arm = |place: Place, step: i64| course(image, &lines[place.line], place, step, AWAY);
+    let [a0, a1] = [arm(shared.a[0], -1)?, arm(shared.a[1], 1)?];
+    let forwards = shared.b[1].at >= shared.b[0].at;
+    let [b0, b1] = [arm(shared.b[0], if forwards { -1 } else { 1 })?, arm(shared.b[1], if forwards { 1 } else { -1 })?];
+    let middle = |[from, to]: [Place; 2]| Place { line: from.line, at: 0.5 * (from.at + to.at) };
+    let places = [middle(shared.a), middle(shared.b)];
+    let [p, q] = places.map(|place| point_at(&lines[place.line], place.at));
+    let turn = |x, y| continuation(x, y, p.midpoint(q), image.line_width);
+    let walked = turn(&a0, &a1) + turn(&b0, &b1);
+    let others = [[turn(&a0, &b0), turn(&a1, &b1)], [turn(&a0, &b1), turn(&a1, &b0)]];
+    let better = |pair: &[f64; 2]| pair.iter().all(|t| *t < LARGEST_TURN) && pair[0] + pair[1] + MARGIN < walked;
+    others.iter().any(better).then_some(places)
+}
