@@ -6,7 +6,7 @@ use common::draw::{line, scan, sheet};
 use fieldtrace::Error;
 use fieldtrace::clean::LineImage;
 use fieldtrace::drawing::{Color, Drawing};
-use fieldtrace::estimate::{FieldEstimator, StructureTensor, UNet};
+use fieldtrace::estimate::{FieldEstimator, UNet};
 use fieldtrace::field::PolyVectorField;
 use fieldtrace::graph::StrokeGraph;
 use fieldtrace::hooks::{Observer, veto};

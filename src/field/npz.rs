@@ -3,7 +3,7 @@
 use super::PolyVectorField;
 use npyz::WriterBuilder;
 use npyz::npz::NpzWriter;
-use npyz::zip::CompressionMethod;
+use npyz::zip::{CompressionMethod, DateTime};
 use npyz::zip::write::FileOptions;
 use std::io::{self, Seek, Write};
 
@@ -26,7 +26,9 @@ pub fn write_npz(field: &PolyVectorField, out: impl Write + Seek) -> io::Result<
     array.finish()
 }
 
-/// Coefficients hardly compress, and readers map stored arrays.
+/// Coefficients hardly compress, and readers map stored arrays. Without the time of day, so that the same field gives the
+/// same bytes.
 fn uncompressed() -> FileOptions {
-    FileOptions::default().compression_method(CompressionMethod::Stored)
+    let epoch = DateTime::default();
+    FileOptions::default().compression_method(CompressionMethod::Stored).last_modified_time(epoch)
 }
