@@ -1,6 +1,7 @@
 //! How lines meet, beyond the plain crossings, tees and corners of `junctions.rs`: sweeps with known truth.
 //!
-//! Floors below one are the shares that were measured: `cargo test --test encounters -- --nocapture` prints what fails. Each
+//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the processor:
+//! `cargo test --test encounters -- --nocapture` prints what fails. Each
 //! sweep leaves a sheet in `tmp/sheets` of Cargo's target directory, with what was drawn beside what was traced.
 
 mod common;
@@ -37,7 +38,7 @@ fn shallow_crossings_are_two_straight_strokes() {
     let cases = pairs(&pairs(&steps(10.0, 30.0, 4.0), &WIDTHS), &TURNS);
     figures(
         "shallow crossings",
-        0.0,
+        0.633,
         &cases,
         |&((between, width), turn)| {
             page(vec![bar(CENTER, turn, 54.0, width), bar(CENTER, turn + between, 54.0, width)])
@@ -57,7 +58,7 @@ fn a_crossing_beside_a_crossing_is_three_straight_strokes() {
     let cases = pairs(&pairs(&pairs(&apart, &slants), &WIDTHS[..4]), &TURNS);
     figures(
         "twin crossings",
-        0.0,
+        0.887,
         &cases,
         |&(((apart, slants), width), turn)| {
             let at = |side: f64| polar(CENTER, turn, side * 0.5 * apart * width);
@@ -77,7 +78,7 @@ fn three_lines_through_one_point_are_three_straight_strokes() {
     let cases = pairs(&pairs(&gaps, &WIDTHS), &TURNS);
     figures(
         "three through a point",
-        0.0,
+        0.786,
         &cases,
         |&((gaps, width), turn)| {
             let angles = [turn, turn + gaps.0, turn + gaps.0 + gaps.1];
@@ -97,7 +98,7 @@ fn a_line_through_a_corner_stays_one_straight_stroke() {
     let cases = pairs(&pairs(&pairs(&[60.0, 90.0, 120.0], &[90.0, 75.0, 0.0]), &WIDTHS), &TURNS);
     figures(
         "lines through corners",
-        0.0,
+        0.822,
         &cases,
         |&(((opening, slant), width), turn)| {
             let arm = |side: f64| polar(CENTER, turn + side * 0.5 * opening, 50.0);
@@ -127,7 +128,7 @@ fn a_corner_stays_sharp_at_every_opening() {
     let cases = pairs(&pairs(&steps(20.0, 160.0, 10.0), &WIDTHS), &TURNS);
     figures(
         "openings of corners",
-        0.0,
+        0.866,
         &cases,
         |&((opening, width), turn)| {
             let tip = CENTER - Vec2::from_angle(f64::to_radians(turn)) * 30.0;
@@ -148,7 +149,7 @@ fn a_loop_that_crosses_itself_is_one_stroke() {
     let cases = pairs(&pairs(&[20.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);
     figures(
         "ribbon loops",
-        0.0,
+        0.7,
         &cases,
         |&((spread, width), turn)| {
             let at = |x: f64, y: f64| {
@@ -175,7 +176,7 @@ fn a_stroke_that_ends_on_its_own_body_is_one_stroke() {
     let middle = |turn: f64| polar(CENTER, turn, 20.0);
     figures(
         "sixes",
-        0.0,
+        0.5,
         &cases,
         |&((radius, width), turn)| {
             let ring = arc(middle(turn), radius, (turn + 90.0).to_radians(), std::f64::consts::TAU, width);
@@ -218,7 +219,7 @@ fn a_circle_that_a_line_touches_stays_a_circle_and_a_line() {
     let cases = pairs(&pairs(&pairs(&[14.0, 22.0, 32.0], &[1.0, 0.5, 0.0]), &WIDTHS), &TURNS);
     figures(
         "tangents of circles",
-        0.0,
+        0.533,
         &cases,
         |&(((radius, depth), width), turn)| {
             let touch = polar(CENTER, turn - 90.0, radius + (1.0 - depth) * width);
@@ -240,7 +241,7 @@ fn circles_that_touch_stay_circles() {
     let cases = pairs(&cases, &[false, true]);
     figures(
         "circles that touch",
-        0.0,
+        0.083,
         &cases,
         |&((((large, small), width), turn), inside)| {
             let (large, small) = if inside { (large + 24.0, small) } else { (large, small) };
@@ -261,7 +262,7 @@ fn an_arc_that_leaves_a_line_is_a_branch_of_it() {
     let cases = pairs(&pairs(&[40.0, 70.0, 120.0], &WIDTHS), &[0.0, 17.0, 45.0, 100.0]);
     figures(
         "tangential merges",
-        0.0,
+        0.883,
         &cases,
         |&((radius, width), turn)| {
             let center = polar(CENTER, turn, -10.0);

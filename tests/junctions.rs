@@ -1,7 +1,7 @@
 //! Simple figures whose truth is known, over angles, widths and positions between the pixels.
 //!
 //! What counts as right is the same in every case of a sweep. Where a share below one is asked for, it is the share
-//! that was measured: the rest are known faults, printed by `cargo test --test junctions -- --nocapture`.
+//! that was measured, less a case: the rest are known faults, printed by `cargo test --test junctions -- --nocapture`.
 
 mod common;
 
@@ -59,7 +59,7 @@ fn straight(result: &Drawing, tolerance: f64) -> Result<(), String> {
 #[test]
 fn a_line_is_one_line_at_every_angle() {
     let cases = cases(&steps(0.0, 175.0, 5.0), &WIDTHS, &OFFSETS);
-    sweep("single lines", 0.97, &cases, |&(angle, width, offset)| {
+    sweep("single lines", 0.998, &cases, |&(angle, width, offset)| {
         let (a, b) = (polar(CENTER, angle, -36.0) + offset, polar(CENTER, angle, 36.0) + offset);
         let truth = [line(a, b, width)];
         let result = traced(&truth);
@@ -128,7 +128,7 @@ fn a_pencil_line_is_one_line() {
 fn a_circle_is_one_closed_stroke() {
     let cases = cases(&[6.0, 8.0, 12.0, 20.0, 30.0, 42.0], &WIDTHS, &OFFSETS);
     let cases: Vec<Case> = cases.into_iter().filter(|&(radius, width, _)| radius >= 2.0 * width).collect();
-    sweep("circles", 0.902, &cases, |&(radius, width, offset)| {
+    sweep("circles", 0.986, &cases, |&(radius, width, offset)| {
         let truth = [circle(CENTER + offset, radius, width)];
         let result = traced(&truth);
         like(&truth, &result, 0.15, 0.4)?;
@@ -151,7 +151,7 @@ fn an_arc_is_one_stroke() {
 fn a_corner_is_one_stroke_of_two_lines() {
     let cases = cases(&[30.0, 45.0, 60.0, 75.0, 90.0, 110.0, 130.0], &WIDTHS, &OFFSETS);
     let cases = pairs(&cases, &[0.0, 20.0, 45.0, 70.0]);
-    sweep("corners", 0.895, &cases, |&((opening, width, offset), turn)| {
+    sweep("corners", 0.976, &cases, |&((opening, width, offset), turn)| {
         let tip = CENTER + offset - Vec2::from_angle(f64::to_radians(turn + 0.5 * opening)) * 20.0;
         let truth = [polyline(&[polar(tip, turn, 50.0), tip, polar(tip, turn + opening, 50.0)], false, width)];
         let result = traced(&truth);
@@ -165,7 +165,7 @@ fn a_blunt_corner_is_one_stroke() {
     // Two arms and a short piece across, whose length is given in widths.
     let cases = pairs(&cases(&[10.0, 20.0, 40.0, 60.0], &[2.0, 2.5, 3.0, 4.0], &OFFSETS[..2]), &[0.4, 0.6, 0.8, 1.0]);
     let cases = pairs(&cases, &[0.0, 15.0, 45.0, 100.0]);
-    sweep("blunt corners", 0.0, &cases, |&(((opening, width, offset), across), turn)| {
+    sweep("blunt corners", 0.572, &cases, |&(((opening, width, offset), across), turn)| {
         let tip = |side: f64| polar(CENTER, turn + 90.0, side * 0.5 * across * width) + offset;
         let arm = |side: f64| polar(tip(side), turn + side * 0.5 * opening, 38.0);
         let truth = [polyline(&[arm(-1.0), tip(-1.0), tip(1.0), arm(1.0)], false, width)];
@@ -176,7 +176,7 @@ fn a_blunt_corner_is_one_stroke() {
 #[test]
 fn a_rectangle_is_one_closed_stroke_of_four_lines() {
     let cases = cases(&[0.0, 5.0, 15.0, 30.0, 45.0], &WIDTHS, &OFFSETS);
-    sweep("rectangles", 0.933, &cases, |&(turn, width, offset)| {
+    sweep("rectangles", 0.986, &cases, |&(turn, width, offset)| {
         let along = Vec2::from_angle(f64::to_radians(turn));
         let corner = |x: f64, y: f64| CENTER + offset + along * x + along.turn_90() * y;
         let corners = [corner(-32.0, -20.0), corner(32.0, -20.0), corner(32.0, 20.0), corner(-32.0, 20.0)];
@@ -222,7 +222,7 @@ fn pencil_stem(turn: f64, width: f64, gap: Option<f64>) -> Result<f64, String> {
 #[test]
 fn a_pencil_stem_that_stops_short_stays_apart() {
     let cases = cases(&steps(0.0, 345.0, 15.0), &WIDTHS[1..4], &OFFSETS[..1]);
-    sweep("gaps on pencil scans", 0.994, &pairs(&cases, &[0.75, 1.0, 1.25, 1.5, 2.0]), |&((turn, width, _), gap)| {
+    sweep("gaps on pencil scans", 0.986, &pairs(&cases, &[0.75, 1.0, 1.25, 1.5, 2.0]), |&((turn, width, _), gap)| {
         let height = pencil_stem(turn, width, Some(gap))?;
         ensure((height - width - gap).abs() < 0.75, || format!("the stem ends {height:.2} from the bar"))
     });
@@ -240,7 +240,7 @@ fn a_pencil_stem_that_touches_stays_joined() {
 #[test]
 fn a_slanted_tee_is_a_bar_and_a_stem() {
     let cases = cases(&[30.0, 45.0, 60.0, 75.0, 105.0, 135.0], &WIDTHS, &OFFSETS);
-    sweep("slanted tees", 0.955, &cases, |&(slant, width, offset)| {
+    sweep("slanted tees", 0.944, &cases, |&(slant, width, offset)| {
         let center = CENTER + offset;
         let truth = [
             line(polar(center, 0.0, -38.0), polar(center, 0.0, 38.0), width),
@@ -256,7 +256,7 @@ fn a_slanted_tee_is_a_bar_and_a_stem() {
 fn a_crossing_is_two_straight_strokes() {
     let cases = cases(&steps(20.0, 90.0, 5.0), &WIDTHS, &OFFSETS);
     let cases = pairs(&cases, &[0.0, 25.0]);
-    sweep("crossings", 0.977, &cases, |&((between, width, offset), turn)| {
+    sweep("crossings", 0.955, &cases, |&((between, width, offset), turn)| {
         let center = CENTER + offset;
         let bar = |angle| line(polar(center, angle, -40.0), polar(center, angle, 40.0), width);
         let truth = [bar(turn), bar(turn + between)];
@@ -270,7 +270,7 @@ fn a_crossing_is_two_straight_strokes() {
 fn a_star_keeps_every_arm() {
     let cases = cases(&[3.0, 4.0, 5.0, 6.0, 7.0, 8.0], &WIDTHS, &OFFSETS);
     let cases = pairs(&cases, &[0.0, 11.0, 30.0, 90.0]);
-    sweep("stars", 0.941, &cases, |&((arms, width, offset), turn)| {
+    sweep("stars", 0.947, &cases, |&((arms, width, offset), turn)| {
         let center = CENTER + offset;
         let tips: Vec<Point> =
             steps(0.0, arms - 1.0, 1.0).iter().map(|i| polar(center, turn + i * 360.0 / arms, 42.0)).collect();
@@ -289,7 +289,7 @@ fn a_star_keeps_every_arm() {
 fn parallel_lines_stay_two() {
     let cases = cases(&steps(0.0, 165.0, 15.0), &WIDTHS, &[Vec2::new(0.0, 0.0), Vec2::new(0.3, 0.7)]);
     let cases = pairs(&cases, &[1.5, 2.0, 3.0]);
-    sweep("parallel lines", 0.988, &cases, |&((angle, width, offset), gap)| {
+    sweep("parallel lines", 0.986, &cases, |&((angle, width, offset), gap)| {
         let apart = Vec2::from_angle(f64::to_radians(angle + 90.0)) * (0.5 * (width + gap));
         let bar = |c: Point| line(polar(c, angle, -36.0), polar(c, angle, 36.0), width);
         let truth = [bar(CENTER + offset + apart), bar(CENTER + offset - apart)];
@@ -407,7 +407,7 @@ fn an_arm_that_leaves_by_an_arc_leaves_where_it_touches() {
 #[test]
 fn hairlines_are_whole_at_every_angle() {
     let cases = cases(&steps(0.0, 175.0, 5.0), &[1.2, 1.5, 1.8], &OFFSETS);
-    sweep("hairlines", 0.975, &cases, |&(angle, width, offset)| {
+    sweep("hairlines", 0.972, &cases, |&(angle, width, offset)| {
         let truth = [line(polar(CENTER, angle, -36.0) + offset, polar(CENTER, angle, 36.0) + offset, width)];
         let result = traced(&truth);
         like(&truth, &result, 0.2, 0.8)?;
@@ -419,7 +419,7 @@ fn hairlines_are_whole_at_every_angle() {
 #[test]
 fn thin_circles_are_whole() {
     let cases = pairs(&pairs(&[12.0, 20.0, 33.0], &[1.2, 1.5, 1.8]), &OFFSETS);
-    sweep("thin circles", 0.962, &cases, |&((radius, width), offset)| {
+    sweep("thin circles", 0.925, &cases, |&((radius, width), offset)| {
         let truth = [circle(CENTER + offset, radius, width)];
         let result = traced(&truth);
         like(&truth, &result, 0.2, 0.8)?;

@@ -1,6 +1,7 @@
 //! Pens from one to 24 pixels, alone and together: ends, widths and meetings.
 //!
-//! Floors below one are the shares that were measured: `cargo test --test pens -- --nocapture` prints what fails. Each
+//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the processor:
+//! `cargo test --test pens -- --nocapture` prints what fails. Each
 //! sweep leaves a sheet in `tmp/sheets` of Cargo's target directory, with what was drawn beside what was traced.
 
 mod common;
@@ -37,7 +38,7 @@ fn a_line_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(0.0, 170.0, 10.0), &PENS);
     figures(
         "ends of lines of every width",
-        0.738,
+        0.733,
         &cases,
         |&(angle, width)| {
             let center = CENTER + kurbo::Vec2::new(0.3, 0.7);
@@ -59,7 +60,7 @@ fn an_arc_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(60.0, 300.0, 60.0), &PENS);
     figures(
         "ends of arcs of every width",
-        0.7,
+        0.76,
         &cases,
         |&(sweep, width)| page(vec![arc(CENTER, 64.0, 0.3, sweep.to_radians(), width)]),
         |_, truth, traced| {
@@ -77,7 +78,7 @@ fn a_corner_is_sharp_at_every_width() {
     let cases = pairs(&pairs(&[45.0, 90.0, 135.0], &PENS), &[0.0, 25.0]);
     figures(
         "corners of every width",
-        0.85,
+        0.883,
         &cases,
         |&((opening, width), turn)| {
             let tip = polar(CENTER, turn, -40.0);
@@ -98,7 +99,7 @@ fn two_pens() -> Vec<(f64, f64)> {
 fn lines_of_two_widths_side_by_side_keep_theirs() {
     figures(
         "two pens side by side",
-        0.19,
+        0.214,
         &pairs(&two_pens(), &[0.0, 30.0]),
         |&((wide, thin), turn)| {
             let bar = |side: f64, width: f64| {
@@ -118,7 +119,7 @@ fn lines_of_two_widths_side_by_side_keep_theirs() {
 fn lines_of_two_widths_cross_straight() {
     figures(
         "two pens that cross",
-        0.285,
+        0.357,
         &pairs(&two_pens(), &[90.0, 50.0]),
         |&((wide, thin), between)| {
             let bar = |angle, width| line(polar(CENTER, angle, -80.0), polar(CENTER, angle, 80.0), width);
@@ -136,7 +137,7 @@ fn lines_of_two_widths_cross_straight() {
 fn a_thin_line_that_ends_on_a_wide_one_is_a_tee() {
     figures(
         "two pens in a tee",
-        0.38,
+        0.309,
         &pairs(&two_pens(), &[90.0, 60.0]),
         |&((wide, thin), slant)| {
             let bar = line(polar(CENTER, 10.0, -80.0), polar(CENTER, 10.0, 80.0), wide);

@@ -1,6 +1,7 @@
 //! What plans and technical drawings are made of: near-parallel lines, hatching, arrow heads, rectangles, long lines.
 //!
-//! Floors below one are the shares that were measured: `cargo test --test technical -- --nocapture` prints what fails. Each
+//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the processor:
+//! `cargo test --test technical -- --nocapture` prints what fails. Each
 //! sweep leaves a sheet in `tmp/sheets` of Cargo's target directory, with what was drawn beside what was traced.
 
 mod common;
@@ -41,7 +42,7 @@ fn near_parallel_lines_stay_two() {
     let cases = pairs(&pairs(&pairs(&[0.5, 1.0, 2.0, 4.0], &[1.5, 2.0, 3.0]), &WIDTHS), &TURNS);
     figures(
         "near-parallel lines",
-        0.979,
+        0.994,
         &cases,
         |&(((between, gap), width), turn)| {
             let at = frame(CENTER, turn);
@@ -65,7 +66,7 @@ fn lines_that_run_together_are_two() {
     let cases = pairs(&pairs(&[6.0, 9.0, 12.0, 16.0], &WIDTHS), &TURNS);
     figures(
         "wedges",
-        0.75,
+        0.843,
         &cases,
         |&((between, width), turn)| {
             let tip = polar(CENTER, turn, -54.0);
@@ -141,7 +142,7 @@ fn hatching_in_a_frame_ends_on_the_frame() {
         strokes.extend(hatching(CENTER, 44.0, angle, gap * width).iter().map(|l| line(l.p0, l.p1, width)));
         page(strokes)
     };
-    figures("hatching in a frame", 0.148, &cases, drawn, |&(_, width), truth, traced| {
+    figures("hatching in a frame", 0.259, &cases, drawn, |&(_, width), truth, traced| {
         same_strokes(truth, traced, 0.3 * width + 0.5)?;
         let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
         ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
@@ -153,7 +154,7 @@ fn an_open_arrow_head_is_a_corner_at_the_end_of_a_shaft() {
     let cases = pairs(&pairs(&pairs(&[15.0, 20.0, 30.0, 45.0], &[5.0, 8.0]), &WIDTHS), &[0.0, 17.0, 90.0, 225.0]);
     figures(
         "open arrow heads",
-        0.726,
+        0.601,
         &cases,
         |&(((opening, size), width), turn)| {
             let tip = polar(CENTER, turn, 46.0);
@@ -203,7 +204,7 @@ fn a_filled_arrow_head_is_a_filled_region_at_the_end_of_a_shaft() {
         .collect();
     figures(
         "filled arrow heads",
-        0.5,
+        0.65,
         &cases,
         |&(((opening, size), width), turn)| {
             let tip = polar(CENTER, turn, 50.0);
@@ -265,7 +266,7 @@ fn an_upright_rectangle_keeps_to_the_axes_exactly() {
     let cases = pairs(&[1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0], &shifts);
     figures(
         "upright rectangles",
-        0.888,
+        0.916,
         &cases,
         |&(width, shift)| rectangle(shift, width),
         |&(width, _), truth, traced| upright(truth, traced, 0.05 * width + 0.35),

@@ -87,7 +87,7 @@ impl FieldEstimator for UNet {
     fn estimate_until(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
         let (width, height) = image.ink.size();
         let ink = Shown::of(image);
-        let grid = Grid::new(width, height, self.config.multiple());
+        let grid = Grid::new(&image.mask, self.config.multiple());
         let tiles: Vec<(usize, usize)> = grid.tiles().collect();
         let tile = |at| Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
         let parts: Vec<Vec<Pixel>> = match &self.runner {
@@ -127,17 +127,23 @@ struct Room {
     scratch: Scratch,
 }
 
-/// How an image is cut into tiles of one size.
+/// How the part of an image that has ink is cut into tiles of one size. Tiles begin where the ink does, so that a drawing
+/// gets the same field wherever it lies on the page.
 struct Grid {
     image: (usize, usize),
+    /// First columns and rows that have ink, and those after the last.
+    inked: [Range<usize>; 2],
     core: (usize, usize),
     multiple: usize,
 }
 
 impl Grid {
-    fn new(width: usize, height: usize, multiple: usize) -> Self {
-        let core = |n: usize| n.div_ceil(n.div_ceil(CORE).max(1)).next_multiple_of(multiple);
-        Self { image: (width, height), core: (core(width), core(height)), multiple }
+    fn new(mask: &Mask, multiple: usize) -> Self {
+        let inked = inked(mask);
+        let core =
+            |inked: &Range<usize>| inked.len().div_ceil(inked.len().div_ceil(CORE).max(1)).next_multiple_of(multiple);
+        let core = (core(&inked[0]), core(&inked[1]));
+        Self { image: mask.size(), inked, core, multiple }
     }
 
     fn halo(&self) -> usize {
@@ -146,8 +152,8 @@ impl Grid {
 
     /// Top left corners of the cores.
     fn tiles(&self) -> impl Iterator<Item = (usize, usize)> {
-        let ((width, height), (w, h)) = (self.image, self.core);
-        (0..height).step_by(h.max(1)).flat_map(move |y| (0..width).step_by(w.max(1)).map(move |x| (x, y)))
+        let ([columns, rows], (w, h)) = (self.inked.clone(), self.core);
+        rows.step_by(h.max(1)).flat_map(move |y| columns.clone().step_by(w.max(1)).map(move |x| (x, y)))
     }
 }
 
@@ -255,6 +261,18 @@ impl<'a> Tile<'a> {
         };
         (0..n).filter_map(of_pixel).collect()
     }
+}
+
+/// The columns and rows from the first to the last that has ink.
+fn inked(mask: &Mask) -> [Range<usize>; 2] {
+    let (mut columns, mut rows) = (usize::MAX..0, usize::MAX..0);
+    for y in 0..mask.height() {
+        for run in runs(mask.row(y)) {
+            columns = columns.start.min(run.start)..columns.end.max(run.end);
+            rows = rows.start.min(y)..y + 1;
+        }
+    }
+    [columns, rows]
 }
 
 /// The runs of ink in a core and so many pixels around it, each with its row.

@@ -3,8 +3,8 @@
 use super::PolyVectorField;
 use npyz::WriterBuilder;
 use npyz::npz::NpzWriter;
-use npyz::zip::{CompressionMethod, DateTime};
 use npyz::zip::write::FileOptions;
+use npyz::zip::{CompressionMethod, DateTime};
 use std::io::{self, Seek, Write};
 
 /// Writes `c0` and `c2` (complex64) and `mask` (uint8, 1 where the field is defined), each
