@@ -265,14 +265,14 @@ impl<'a> Tile<'a> {
 
 /// The columns and rows from the first to the last that has ink.
 fn inked(mask: &Mask) -> [Range<usize>; 2] {
-    let (mut columns, mut rows) = (usize::MAX..0, usize::MAX..0);
+    let mut bounds: Option<[Range<usize>; 2]> = None;
     for y in 0..mask.height() {
         for run in runs(mask.row(y)) {
-            columns = columns.start.min(run.start)..columns.end.max(run.end);
-            rows = rows.start.min(y)..y + 1;
+            let [columns, rows] = bounds.unwrap_or([run.clone(), y..y]);
+            bounds = Some([columns.start.min(run.start)..columns.end.max(run.end), rows.start..y + 1]);
         }
     }
-    [columns, rows]
+    bounds.unwrap_or_default()
 }
 
 /// The runs of ink in a core and so many pixels around it, each with its row.

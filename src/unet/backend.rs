@@ -30,8 +30,12 @@ impl Backend {
             "ndarray" => Ok(Self::Library(Device::ndarray())),
             #[cfg(feature = "gpu")]
             "gpu" => Ok(Self::Library(Device::wgpu(burn::tensor::DeviceKind::DefaultDevice))),
+            #[cfg(not(feature = "train"))]
             "flex" => Err(missing(name, "train")),
-            "ndarray" | "gpu" => Err(missing(name, name)),
+            #[cfg(not(feature = "ndarray"))]
+            "ndarray" => Err(missing(name, name)),
+            #[cfg(not(feature = "gpu"))]
+            "gpu" => Err(missing(name, name)),
             _ => Err(Error::Option {
                 option: "device",
                 reason: format!("{name} is not auto, cpu, flex, ndarray or gpu"),
@@ -49,6 +53,7 @@ impl Backend {
     }
 }
 
+#[cfg(not(all(feature = "ndarray", feature = "gpu")))]
 fn missing(name: &str, feature: &str) -> Error {
     Error::Option {
         option: "device",

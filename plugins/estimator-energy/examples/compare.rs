@@ -1,4 +1,5 @@
-//! The estimators side by side: the angular error of their fields and the time that they take.
+//! The estimators side by side: the angular error of their fields, the time that they take, and how the traces under
+//! them do.
 //!
 //! `cargo run --release -p fieldtrace-estimator-energy --example compare -- FOLDER KIND`, the folder holding rasters
 //! `NAME.KIND.EXT` and their true strokes as `NAME.gt.svg`.
@@ -20,7 +21,10 @@ fn main() -> anyhow::Result<()> {
     anyhow::ensure!(!rasters.is_empty(), "{folder}: holds no NAME.{kind}.EXT");
     let estimators: [Box<dyn FieldEstimator>; 3] =
         [Box::new(StructureTensor::default()), Box::new(EnergyEstimator::default()), Box::new(UNet::built_in()?)];
-    println!("{:10} {:>9} {:>13} {:>15}", kind, "ink, deg", "junction, deg", "field, s per MP");
+    println!(
+        "{:10} {:>9} {:>13} {:>15} {:>11} {:>9} {:>7}",
+        kind, "ink, deg", "junction, deg", "field, s per MP", "junction_f1", "integrity", "purity"
+    );
     for estimator in estimators {
         let name = estimator.name().to_owned();
         let vectorizer = Vectorizer::with(Options::default(), estimator)?;
@@ -31,7 +35,10 @@ fn main() -> anyhow::Result<()> {
         };
         let total = |figure: fn(&Measurement) -> f64| all.iter().map(figure).sum::<f64>();
         let speed = total(|m| m.field_seconds) / total(|m| m.megapixels);
-        println!("{name:10} {:>9.3} {:>13.3} {speed:>15.3}", mean(|m| m.field.ink), mean(|m| m.field.junction));
+        let angles = format!("{:>9.3} {:>13.3}", mean(|m| m.field.ink), mean(|m| m.field.junction));
+        let strokes = [mean(|m| m.lines.junction_f1), mean(|m| m.lines.integrity), mean(|m| m.lines.purity)];
+        let [junction, integrity, purity] = strokes;
+        println!("{name:10} {angles} {speed:>15.3} {junction:>11.3} {integrity:>9.3} {purity:>7.3}");
     }
     Ok(())
 }
