@@ -1,8 +1,8 @@
 //! How lines meet, beyond the plain crossings, tees and corners of `junctions.rs`: sweeps with known truth.
 //!
-//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the processor:
-//! `cargo test --test encounters -- --nocapture` prints what fails. Each
-//! sweep leaves a sheet in `tmp/sheets` of Cargo's target directory, with what was drawn beside what was traced.
+//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the
+//! processor: `cargo test --test encounters -- --nocapture` prints what fails. Each sweep leaves a sheet in `tmp/sheets` of
+//! Cargo's target directory, with what was drawn beside what was traced.
 
 mod common;
 

@@ -1,8 +1,8 @@
 //! What plans and technical drawings are made of: near-parallel lines, hatching, arrow heads, rectangles, long lines.
 //!
-//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the processor:
-//! `cargo test --test technical -- --nocapture` prints what fails. Each
-//! sweep leaves a sheet in `tmp/sheets` of Cargo's target directory, with what was drawn beside what was traced.
+//! Floors below one are the shares that were measured, less one case, for the network's last digits depend on the
+//! processor: `cargo test --test technical -- --nocapture` prints what fails. Each sweep leaves a sheet in `tmp/sheets` of
+//! Cargo's target directory, with what was drawn beside what was traced.
 
 mod common;
 

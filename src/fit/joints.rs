@@ -259,11 +259,11 @@ fn segments(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance:
 }
 
 /// The cubic of one piece between its joints. Where points are no line at all, as in a tangle, least squares may want
-/// handles that lead far away: none is longer than the piece.
+/// handles that lead far away: none is longer than the piece, which may have no length at all.
 fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
     let ends = Ends { start: from.point, end: to.point, start_tangent: from.tangent, end_tangent: to.tangent };
     let CubicBez { p0, p1, p2, p3 } = fit_cubic(samples, piece.from, piece.to, &ends, 8).curve;
-    let longest = (samples.arc[piece.to] - samples.arc[piece.from]).max((p3 - p0).hypot());
+    let longest = (samples.arc[piece.to] - samples.arc[piece.from]).max((p3 - p0).hypot()).max(f64::MIN_POSITIVE);
     let held = |from: Point, to: Point| from + (to - from) * (longest / (to - from).hypot().max(longest));
     Segment::Cubic(CubicBez::new(p0, held(p0, p1), held(p3, p2), p3))
 }

@@ -20,17 +20,9 @@ pub(super) fn smooth(fill: &Fill, tolerance: Tolerance) -> Fill {
         }
         let pieces = segment(&samples, tolerance);
         let segments = join(&samples, &pieces, true, [None, None], tolerance);
-        let mut curve = BezPath::new();
-        curve.move_to(segments[0].start());
-        segments.iter().for_each(|s| s.append_to(&mut curve));
-        if !curve.is_finite() {
-            // A ring that folds onto itself may have no curve through its corners: it stays as it is.
-            curve.truncate(0);
-            curve.move_to(ring[0]);
-            ring[1..].iter().for_each(|p| curve.line_to(*p));
-        }
-        curve.close_path();
-        outline.extend(curve);
+        outline.move_to(segments[0].start());
+        segments.iter().for_each(|s| s.append_to(&mut outline));
+        outline.close_path();
     }
     Fill { outline, color: fill.color }
 }

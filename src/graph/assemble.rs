@@ -253,13 +253,9 @@ impl<'a> Assembly<'a> {
         let mut trails = std::mem::take(&mut self.out.trails);
         trails.retain(|trail| {
             let length: f64 = trail.edges.iter().map(|(e, _)| length(&graph[*e].points)).sum();
-            let free = trail
-                .edges
-                .iter()
-                .filter_map(|(e, _)| graph.edge_endpoints(*e))
-                .any(|(a, b)| [a, b].iter().any(|&n| graph[n].kind == JunctionKind::FreeEnd));
-            let ends = trail.edges.iter().filter_map(|(e, _)| graph.edge_endpoints(*e));
-            let within = ends.into_iter().all(|(a, b)| a == b) && length < line_width;
+            let mut ends = trail.edges.iter().filter_map(|(e, _)| graph.edge_endpoints(*e));
+            let within = length < line_width && ends.clone().all(|(a, b)| a == b);
+            let free = ends.any(|(a, b)| [a, b].iter().any(|&n| graph[n].kind == JunctionKind::FreeEnd));
             let keep = (length >= least || !free) && !within;
             if !keep {
                 trail.edges.iter().for_each(|(e, _)| drop(graph.remove_edge(*e)));

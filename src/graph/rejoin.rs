@@ -13,8 +13,8 @@ use kurbo::Point;
 
 /// What the stem must gain over the body's own continuation, radians.
 const MARGIN: f64 = 0.1;
-/// A stem that turns by more than this into the body (35 degrees) does not continue it.
-const LARGEST_TURN: f64 = 0.61;
+/// An arm that turns by more than this (35 degrees) does not continue another.
+pub(super) const LARGEST_TURN: f64 = 0.61;
 /// Course of a body beside a node: from this many line widths away, over that many.
 const AWAY: f64 = 2.0;
 const OVER: f64 = 5.0;

@@ -6,11 +6,10 @@
 
 use super::contacts::{LineIndex, Place, point_at};
 use super::nodes::continuation;
-use super::rejoin::course;
+use super::rejoin::{LARGEST_TURN, course};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Streamline};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Lines nearer to each other than this, in line widths, share ink.
 const TOUCH: f64 = 0.6;
@@ -22,8 +21,6 @@ const OWN: f64 = 6.0;
 const AWAY: f64 = 0.75;
 /// What another pairing must gain, radians.
 const MARGIN: f64 = 0.2;
-/// An arm that turns by more than this (35 degrees) does not continue another.
-const LARGEST_TURN: f64 = 0.61;
 
 /// A stretch of shared ink: first and last place on each of two lines.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +40,7 @@ pub(super) fn cuts(image: &LineImage, lines: &[Streamline]) -> Vec<Place> {
 /// The stretches that a line shares with those after it, and with later parts of its own.
 fn shared(image: &LineImage, lines: &[Streamline], index: &LineIndex, i: usize) -> Vec<Shared> {
     let line = &lines[i];
-    let mut open: BTreeMap<(usize, usize), Shared> = BTreeMap::new();
-    let mut done = Vec::new();
+    let mut stretches: Vec<Shared> = Vec::new();
     let own = OWN * image.line_width / STEP;
     // Where a width was measured, the line is alone.
     for k in (0..line.points.len()).filter(|&k| line.widths[k].is_nan()) {
@@ -54,23 +50,19 @@ fn shared(image: &LineImage, lines: &[Streamline], index: &LineIndex, i: usize) 
                 continue;
             }
             // Passes of one line are told apart by where on it they are.
-            let pass = |s: &Shared| (place.at - s.b[1].at).abs() * STEP <= 2.0 * image.line_width;
-            let goes_on = |s: &Shared| here.at - s.a[1].at <= 4.0 && pass(s);
-            let same_line = open.range((place.line, 0)..=(place.line, usize::MAX));
-            let found = same_line.filter(|(_, s)| goes_on(s)).map(|(key, _)| *key).next();
-            match found.and_then(|key| open.get_mut(&key)) {
+            let goes_on = |s: &&mut Shared| {
+                let [a, b] = [s.a[1], s.b[1]];
+                b.line == place.line
+                    && here.at - a.at <= 4.0
+                    && (place.at - b.at).abs() * STEP <= 2.0 * image.line_width
+            };
+            match stretches.iter_mut().find(goes_on) {
                 Some(stretch) => (stretch.a[1], stretch.b[1]) = (here, place),
-                None => {
-                    let number = done.len() + open.len();
-                    open.insert((place.line, number), Shared { a: [here; 2], b: [place; 2] });
-                }
+                None => stretches.push(Shared { a: [here; 2], b: [place; 2] }),
             }
         }
-        let over: Vec<_> = open.iter().filter(|(_, s)| here.at - s.a[1].at > 4.0).map(|(key, _)| *key).collect();
-        done.extend(over.iter().filter_map(|key| open.remove(key)));
     }
-    done.extend(open.into_values());
-    done
+    stretches
 }
 
 /// Where both lines are to be cut, if another pairing of their arms is better.

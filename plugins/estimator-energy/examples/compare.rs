@@ -36,8 +36,8 @@ fn main() -> anyhow::Result<()> {
         let total = |figure: fn(&Measurement) -> f64| all.iter().map(figure).sum::<f64>();
         let speed = total(|m| m.field_seconds) / total(|m| m.megapixels);
         let angles = format!("{:>9.3} {:>13.3}", mean(|m| m.field.ink), mean(|m| m.field.junction));
-        let strokes = [mean(|m| m.lines.junction_f1), mean(|m| m.lines.integrity), mean(|m| m.lines.purity)];
-        let [junction, integrity, purity] = strokes;
+        let junction = mean(|m| m.lines.junction_f1);
+        let (integrity, purity) = (mean(|m| m.lines.integrity), mean(|m| m.lines.purity));
         println!("{name:10} {angles} {speed:>15.3} {junction:>11.3} {integrity:>9.3} {purity:>7.3}");
     }
     Ok(())
