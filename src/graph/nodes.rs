@@ -12,6 +12,8 @@ use rstar::primitives::GeomWithData;
 
 /// Nodes nearer to one another than this, in line widths, are one.
 const MERGE: f64 = 0.8;
+/// A line's own end sticks out of a tee on that line when it lies further from it than this, in line widths.
+const STICKS_OUT: f64 = 0.6;
 /// Ends on a body pair up across it when the stroke turns by less than this (35 degrees).
 const ACROSS_BODY: f64 = 0.61;
 /// Beyond the first pair at a branch, arms pair up when the stroke turns by less than this (60 degrees).
@@ -214,6 +216,14 @@ impl Solver<'_> {
     fn may_merge(&self, a: &Node, b: &Node) -> bool {
         let short = |e: &End| (self.lines[e.line].points.len() as f64) * STEP < 3.0 * self.image.line_width;
         let touches_ink = |n: &Node| n.ends.len() > 1 || !n.bodies.is_empty();
+        let sticks_out = |end: &Node, tee: &Node| {
+            let on_its_body = |&e: &usize| tee.bodies.iter().any(|place| place.line == self.end(e).line);
+            let far = (end.position - tee.position).hypot() > STICKS_OUT * self.image.line_width;
+            far && end.ends.len() == 1 && end.bodies.is_empty() && end.ends.iter().all(on_its_body)
+        };
+        if sticks_out(a, b) || sticks_out(b, a) {
+            return false;
+        }
         let folds = a.ends.iter().any(|&x| b.ends.iter().any(|&y| x / 2 == y / 2 && short(self.end(x))));
         !folds && (touches_ink(a) || touches_ink(b))
     }
