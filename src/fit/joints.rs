@@ -271,7 +271,9 @@ fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
 /// The arc between two joints, if it keeps to their tangents and to the samples.
 fn smooth_arc(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance: Tolerance) -> Option<Segment> {
     // The chord turns half of the arc's angle away from each tangent: the mean of what both ends ask for.
-    let chord = (to.point - from.point).normalize();
+    let chord = to.point - from.point;
+    // All the way around there is none.
+    let chord = (chord.hypot() > 0.0).then(|| chord.normalize())?;
     let half = |tangent: Vec2, sign: f64| sign * tangent.cross(chord).atan2(tangent.dot(chord));
     let at_start = half(from.tangent.unwrap_or(draft.start_tangent), 1.0);
     let at_end = half(to.tangent.unwrap_or(draft.end_tangent), -1.0);

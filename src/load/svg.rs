@@ -1,6 +1,7 @@
 //! SVG inputs: parsed by `usvg`, rendered by `resvg` over white.
 
 mod arcs;
+mod radii;
 mod strokes;
 
 pub use strokes::drawing;
@@ -14,6 +15,7 @@ use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use std::sync::{Arc, OnceLock};
 use usvg::fontdb::Database;
+use usvg::roxmltree::{Document, ParsingOptions};
 use usvg::{ImageHrefResolver, Tree};
 
 /// Longer side in pixels below which a drawing is enlarged where neither a size nor a resolution was asked for.
@@ -74,7 +76,19 @@ fn parse(name: &str, text: &[u8], options: &LoadOptions) -> Result<Tree> {
     if text.windows(5).any(|w| w == b"<text") || text.windows(5).any(|w| w == b":text") {
         parser.fontdb = system_fonts();
     }
-    Tree::from_data(text, &parser).map_err(|e| undecodable(name, e))
+    let document = document(name, text)?;
+    Tree::from_xmltree(&document, &parser).map_err(|e| undecodable(name, e))
+}
+
+/// The elements of a text whose arcs can all be taken apart.
+fn document<'a>(name: &str, text: &'a [u8]) -> Result<Document<'a>> {
+    let text = std::str::from_utf8(text).map_err(|e| undecodable(name, e))?;
+    let options = ParsingOptions { allow_dtd: true, ..Default::default() };
+    let document = Document::parse_with_options(text, options).map_err(|e| undecodable(name, e))?;
+    match radii::too_large(&document) {
+        Some(radius) => Err(undecodable(name, format!("an arc has a radius of {radius:e}"))),
+        None => Ok(document),
+    }
 }
 
 /// The fonts of the system, read once.
@@ -92,6 +106,9 @@ fn system_fonts() -> Arc<Database> {
 fn embedded_images(max_pixels: u64) -> ImageHrefResolver<'static> {
     let resolve = ImageHrefResolver::default_data_resolver();
     let bearable = move |data: &[u8]| {
+        if is_svg(data) {
+            return unpack("", data).is_ok_and(|text| document("", &text).is_ok());
+        }
         let reader = ImageReader::new(Cursor::new(data)).with_guessed_format().ok();
         let size = reader.and_then(|r| r.into_dimensions().ok());
         size.is_none_or(|(w, h)| u64::from(w) * u64::from(h) <= max_pixels)
