@@ -27,6 +27,9 @@ const COVERED: f64 = 0.35;
 /// How far to coast along covered ink in the hope of coming out on its other side, in line widths.
 const COAST_COVERED: f64 = 8.0;
 
+/// A walk that is back within so many line widths on the line that it ran along has only strayed from it.
+const BACK_IN: f64 = 4.0;
+
 /// On a noisy line, the middle has ended where it has lost this share of its ink.
 const END_NOISY: f32 = 0.5;
 /// How far around a point a clean line must be whole, in pixels.
@@ -101,6 +104,9 @@ impl<'a, 'b> Walker<'a, 'b> {
         let limit = 16 * (self.coverage.ink_pixels + 64);
         let mut covered_from: Option<usize> = None;
         let (mut free_run, mut covered_run) = (0, 0);
+        // The streamline that the last covered stretch ran along, where that began, and where the walk came out of it.
+        let mut came_out: Option<(u32, usize, usize)> = None;
+        let mut beside = self.id;
         loop {
             let index = sign * (steps.len() - known) as i32;
             let here = &steps[steps.len() - 1];
@@ -135,11 +141,18 @@ impl<'a, 'b> Walker<'a, 'b> {
             covered_run = if covering.is_some() { covered_run + 1 } else { 0 };
             let lasting = f64::from(covered_run) * STEP > self.width;
             match (covering, covered_from) {
-                (Some(_), None) if lasting || !next.width.is_nan() => covered_from = Some(steps.len()),
-                (Some(_), Some(_)) => free_run = 0,
-                (None, Some(_)) => {
+                (Some(mark), None) if lasting || !next.width.is_nan() => {
+                    let back = came_out.filter(|(line, _, out)| {
+                        *line == mark.streamline && (steps.len() - out) as f64 * STEP < BACK_IN * self.width
+                    });
+                    covered_from = Some(back.map_or(steps.len(), |(_, from, _)| from));
+                    beside = mark.streamline;
+                }
+                (Some(mark), Some(_)) => (free_run, beside) = (0, mark.streamline),
+                (None, Some(from)) => {
                     free_run += 1;
                     if f64::from(free_run) * STEP > 0.75 * self.width {
+                        came_out = Some((beside, from, steps.len()));
                         covered_from = None;
                         free_run = 0;
                     }

@@ -67,6 +67,10 @@ fn what_is_no_image() {
     assert!(error("icon.ico", b"\0\0\x01\0\x01\0\x10\x10").contains("is not supported"));
     error("page.html", b"<!DOCTYPE html><html><body>x</body></html>");
     error("broken.svg", b"<svg xmlns='http://www.w3.org/2000/svg' width='5' height='5'><path");
+    error(
+        "far.svg",
+        b"<svg xmlns='http://www.w3.org/2000/svg' width='5' height='5'><path d='M0 0A1e60 1e60 0 0 1 5 5'/></svg>",
+    );
     error("zero.svg", b"<svg xmlns='http://www.w3.org/2000/svg' width='0' height='5'/>");
     error("broken.svgz", b"\x1F\x8B\x08\0\0\0\0\0\0\x03garbage");
     error("empty.pgm", b"P5\n0 0\n255\n");
