@@ -7,8 +7,8 @@
 mod common;
 
 use common::compare::{apart, bow, lines, straight_pieces};
-use common::draw::{line, polar, polyline, scan, scan_of, sheet};
-use common::figures::{figures, figures_on, like_stroke, nearest, nearest_end, same_strokes, straight};
+use common::draw::{circle, line, polar, polyline, scan, scan_of, sheet};
+use common::figures::{figures, figures_on, like_stroke, nearest, nearest_end, same_length, same_strokes, straight};
 use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
@@ -307,5 +307,37 @@ fn a_long_pencil_line_does_not_wobble() {
             let body = common::compare::body_apart(truth, traced, 2.0);
             ensure(body.mean <= 0.15, || format!("{body:.3?}"))
         },
+    );
+}
+
+#[test]
+fn a_belt_round_two_rings_leaves_each_once_around() {
+    let cases = pairs(&pairs(&[50.0, 57.5, 65.0], &steps(0.0, 67.5, 22.5)), &WIDTHS);
+    figures_on(
+        "belts",
+        0.979,
+        &cases,
+        |&((radius, turn), width)| {
+            let at = frame(Point::new(160.0, 160.0), turn);
+            let (small, apart) = (35.0, 80.0);
+            // The outer tangents touch both rings at this angle from the line of centres.
+            let touch = f64::acos((radius - small) / (2.0 * apart));
+            let tangent = |side: f64| {
+                let out = Vec2::new(touch.cos(), side * touch.sin());
+                line(at(-apart + radius * out.x, radius * out.y), at(apart + small * out.x, small * out.y), width)
+            };
+            sheet(
+                320,
+                320,
+                vec![
+                    circle(at(-apart, 0.0), radius, width),
+                    circle(at(apart, 0.0), small, width),
+                    tangent(1.0),
+                    tangent(-1.0),
+                ],
+            )
+        },
+        |&((radius, turn), width), drawing| pencil(drawing, radius + turn + width),
+        |_, truth, traced| same_length(truth, traced, 0.06),
     );
 }
