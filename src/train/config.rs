@@ -36,6 +36,9 @@ pub struct TrainConfig {
     /// Sheets in the training set, each seen once an epoch and in another order every time, a crop of each; 0 draws
     /// new ones for every step.
     pub images: usize,
+    /// Lay every crop down in one of the eight ways to, turned by quarters and mirrored, drawn anew each time: a set of
+    /// images is learned by heart later. New sheets come in every direction without it.
+    pub turns: bool,
     /// Draw this many lines and arcs on each sheet and nothing else; 0 draws of everything.
     pub primitives: usize,
     /// A folder of SVG drawings to mix in.
@@ -71,6 +74,7 @@ impl Default for TrainConfig {
             sheet: 144,
             crops_a_sheet: 4,
             images: 0,
+            turns: false,
             primitives: 0,
             svgs: None,
             svg_share: 0.5,

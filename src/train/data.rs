@@ -2,6 +2,7 @@
 
 use super::config::TrainConfig;
 use super::source::{Sight, Source, sight};
+use super::turn::Turn;
 use crate::ground_truth::{FieldTruth, Place};
 use crate::raster::Raster;
 use crate::unet::{Features, Input, features};
@@ -40,7 +41,11 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn planes(&mut self) -> [&mut Vec<f32>; 5] {
+    pub(super) fn planes(&self) -> [&Vec<f32>; 5] {
+        [&self.input, &self.base, &self.target, &self.roots, &self.weights]
+    }
+
+    pub(super) fn planes_mut(&mut self) -> [&mut Vec<f32>; 5] {
         [&mut self.input, &mut self.base, &mut self.target, &mut self.roots, &mut self.weights]
     }
 
@@ -74,9 +79,9 @@ impl Sample {
     }
 
     /// The square `[x, x + crop) x [y, y + crop)` of a sample of a size.
-    fn cropped(&mut self, (width, height): (usize, usize), x: usize, y: usize, crop: usize) -> Self {
+    fn cropped(&self, (width, height): (usize, usize), x: usize, y: usize, crop: usize) -> Self {
         let mut out = Self::default();
-        for (from, to) in self.planes().into_iter().zip(out.planes()) {
+        for (from, to) in self.planes().into_iter().zip(out.planes_mut()) {
             for plane in from.chunks_exact(width * height) {
                 for row in plane.chunks_exact(width).skip(y).take(crop) {
                     to.extend_from_slice(&row[x..x + crop]);
@@ -90,7 +95,7 @@ impl Sample {
     pub fn stacked(samples: impl IntoIterator<Item = Self>) -> Self {
         let mut out = Self::default();
         for mut sample in samples {
-            for (from, to) in sample.planes().into_iter().zip(out.planes()) {
+            for (from, to) in sample.planes_mut().into_iter().zip(out.planes_mut()) {
                 to.append(from);
             }
         }
@@ -118,7 +123,7 @@ pub(super) fn sheet(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig)
 fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
     let mut rng = stream(config, number);
     let Sight { ink, truth } = sheet(&mut rng, source, config);
-    let mut whole = Sample::new(&ink, &truth, config.network.input);
+    let whole = Sample::new(&ink, &truth, config.network.input);
     let (width, height) = ink.size();
     let mut spots = || (rng.random_range(0..=width - config.crop), rng.random_range(0..=height - config.crop));
     let inked = |x: usize, y: usize| {
@@ -157,11 +162,18 @@ fn sheets(config: &TrainConfig, step: usize) -> Vec<u64> {
     numbers.map(number).collect()
 }
 
+/// The crops of a step's sheets as one sample, each laid down at random where the configuration says so.
+fn joined(config: &TrainConfig, step: usize, crops: impl Iterator<Item = Sample>) -> Sample {
+    let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x7042_0a11);
+    rng.set_stream(step as u64);
+    Sample::stacked(crops.map(|c| if config.turns { c.turned(Turn::draw(&mut rng), config.crop) } else { c }))
+}
+
 /// The batch of a step.
 pub fn batch(config: &TrainConfig, source: &Source, step: usize) -> Sample {
     let sheets = sheets(config, step).into_par_iter();
     let parts: Vec<Vec<Sample>> = sheets.map(|n| crops(config, source, n)).collect();
-    Sample::stacked(parts.into_iter().flatten())
+    joined(config, step, parts.into_iter().flatten())
 }
 
 /// Batches of a range of steps, in order, a few ahead of the reader.
@@ -175,7 +187,7 @@ pub fn batches(config: &TrainConfig, source: &Arc<Source>, steps: Range<usize>) 
             let sample = if set.is_empty() {
                 batch(&config, &source, step)
             } else {
-                Sample::stacked(sheets(&config, step).into_iter().flat_map(|n| set[n as usize].clone()))
+                joined(&config, step, sheets(&config, step).into_iter().flat_map(|n| set[n as usize].clone()))
             };
             if sender.send(sample).is_err() {
                 return;

@@ -11,6 +11,7 @@ mod run;
 mod source;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod validate;
 
 pub use by_heart::{Iteration, by_heart};
@@ -19,4 +20,5 @@ pub use data::{Sample, batch, batches};
 pub use loss::{Batch, Loss};
 pub use run::{Progress, Start, Trainer};
 pub use source::{Skipped, Source};
+pub use turn::Turn;
 pub use validate::{FieldError, Validation, Validator};

@@ -195,6 +195,24 @@ fn a_set_of_images_is_seen_once_an_epoch() {
 }
 
 #[test]
+fn images_that_are_turned_are_so_anew_each_time_and_repeat() {
+    let set = TrainConfig { images: 4, crops_a_sheet: 1, batch: 4, sheet: 16, scans: 0.0, ..tiny() };
+    let config = TrainConfig { turns: true, ..set.clone() };
+    let source = Arc::new(Source::synthetic());
+    let received: Vec<Sample> = batches(&config, &source, 3..6).iter().collect();
+    assert!(received.iter().zip(3..).all(|(s, step)| s.input == batch(&config, &source, step).input));
+    let values = |sample: &Sample| {
+        let mut ink: Vec<u32> = sample.weights.iter().map(|v| v.to_bits()).collect();
+        ink.sort_unstable();
+        ink
+    };
+    let unturned = batch(&set, &source, 3);
+    assert_ne!(received[0].input, unturned.input);
+    assert!(received.iter().all(|s| values(s) == values(&unturned)));
+    assert_ne!(received[0].input, received[1].input);
+}
+
+#[test]
 fn the_loss_of_the_truth_is_nothing() {
     let config = TrainConfig { network: UNetConfig { input: Input::Ink, ..tiny().network }, ..tiny() };
     let device = Device::flex();
