@@ -291,7 +291,7 @@ impl Reader {
         }
         for (i, item) in lists.dots.iter().enumerate() {
             let centre = self.point(&format!("dots[{i}]"), [item.x, item.y])?;
-            let diameter = self.scale * within(format!("dots[{i}].diameter"), item.diameter, 0.0, FARTHEST)?;
+            let diameter = self.scale * within(format!("dots[{i}].diameter"), item.diameter, 0.01, FARTHEST)?;
             self.graph.dots.push(Dot { centre, diameter, color: item.color.0 });
         }
         for (i, item) in lists.fills.iter().enumerate() {
