@@ -144,6 +144,23 @@ fn a_corner_stays_sharp_at_every_opening() {
 }
 
 #[test]
+fn corners_that_share_their_vertex_stay_two() {
+    // Degrees between the arms that lie nearest, and by how much the arms opposite to them are off one line.
+    let cases = pairs(&pairs(&pairs(&[20.0, 30.0, 40.0], &[18.0, 22.0, 26.0]), &WIDTHS[1..]), &TURNS);
+    figures(
+        "corners that share their vertex",
+        0.879,
+        &cases,
+        |&(((between, bend), width), turn)| {
+            let arm = |degrees: f64| polar(CENTER, turn + degrees, 52.0);
+            let corner = |from: f64, to: f64| polyline(&[arm(from), CENTER, arm(to)], false, width);
+            page(vec![corner(0.0, 90.0), corner(-between, 270.0 - bend)])
+        },
+        |&((_, width), _), truth, traced| same_strokes(truth, traced, 0.3 * width + 0.5),
+    );
+}
+
+#[test]
 fn a_loop_that_crosses_itself_is_one_stroke() {
     // The flatter the loop, the shallower its crossing.
     let cases = pairs(&pairs(&[20.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);

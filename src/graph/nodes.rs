@@ -21,6 +21,13 @@ const LATER_PAIR: f64 = 1.05;
 /// Arms never pair up when the stroke would turn by more than this (170 degrees).
 const LARGEST_TURN: f64 = 2.97;
 
+/// Of four arms, two that turn by less than this (15 degrees) are one line.
+const STRAIGHT: f64 = 0.26;
+/// A stroke folds back when it turns by more than this (130 degrees).
+const FOLD: f64 = 2.27;
+/// Corners that are likelier than a fold turn by less than this (120 degrees).
+const CORNER: f64 = 2.09;
+
 /// Two ends through which one stroke runs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
@@ -231,6 +238,13 @@ impl Solver<'_> {
     /// Which ends continue in which: least turn first. Two ends that meet alone always do, since their courses can
     /// be misread where both walks went round the corner.
     fn pairs(&self, node: &Node) -> Vec<Pair> {
+        if let ([a, b, c, d], true) = (&node.ends[..], node.bodies.is_empty()) {
+            let ends = [*a, *b, *c, *d];
+            let arms = ends.map(|e| &self.end(e).tail);
+            if let Some(corners) = two_corners(arms, node.position, self.image.line_width) {
+                return corners.map(|(arms, turn)| Pair { ends: arms.map(|k| ends[k]), turn }).to_vec();
+            }
+        }
         let alone = node.bodies.is_empty() && node.ends.len() == 2;
         let mut candidates = Vec::new();
         for (i, &a) in node.ends.iter().enumerate() {
@@ -288,6 +302,31 @@ pub(super) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f6
     let (_, out) = arm_line(b, at, line_width);
     let jump = (CURVATURE_SPAN * line_width * (a.curvature + b.curvature)).abs().min(0.25);
     angle_between(into, -out).abs() + jump
+}
+
+/// The two corners, with the turn at each, of four arms where corners share their vertex: without them, the smoothest
+/// stroke bends all the same, and leaves two arms beside each other to fold back.
+pub(super) fn two_corners(arms: [&Tail; 4], at: Point, line_width: f64) -> Option<[([usize; 2], f64); 2]> {
+    let lines = arms.map(|arm| arm_line(arm, at, line_width));
+    if lines.iter().any(|(point, heading)| heading.cross(at - *point).abs() > line_width) {
+        return None;
+    }
+    let mut around = [0, 1, 2, 3];
+    let headings = lines.map(|(_, heading)| heading);
+    around.sort_by(|&a, &b| headings[a].atan2().total_cmp(&headings[b].atan2()));
+    let pairing = |k: [usize; 4]| {
+        let turn = |a: usize, b: usize| ([a, b], angle_between(headings[a], -headings[b]).abs());
+        let k = k.map(|k| around[k]);
+        [turn(k[0], k[1]), turn(k[2], k[3])]
+    };
+    let least = |pairs: &[([usize; 2], f64); 2]| pairs[0].1.min(pairs[1].1);
+    let most = |pairs: &[([usize; 2], f64); 2]| pairs[0].1.max(pairs[1].1);
+    let (mut folded, mut corners, across) = (pairing([0, 1, 2, 3]), pairing([1, 2, 3, 0]), pairing([0, 2, 1, 3]));
+    if least(&corners) < least(&folded) {
+        std::mem::swap(&mut folded, &mut corners);
+    }
+    let bends = least(&folded) > STRAIGHT && least(&folded) < least(&across);
+    (bends && most(&folded) > FOLD && most(&corners) < CORNER).then_some(corners)
 }
 
 /// The point of a line nearest to `p`, among those within `reach` pixels along it from a place.

@@ -2,11 +2,12 @@
 //!
 //! Where two lines run into one at a small angle, the walk that comes first goes on along either. Once the other
 //! arm is known, the three are compared: when the stem continues one side of the body better than the body's
-//! other side does, the body is cut there, and its parts are paired anew with the stem.
+//! other side does, the body is cut there, and its parts are paired anew with the stem. So it is where two corners share
+//! their vertex, and a walk ran by from one to the other.
 
 use super::contacts::Place;
 use super::ends::End;
-use super::nodes::{Node, continuation};
+use super::nodes::{Node, continuation, two_corners};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline, Tail};
 use kurbo::Point;
@@ -29,8 +30,14 @@ fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Nod
     let sides = [-1, 1].map(|step| course(image, &lines[body.line], body, step, AWAY));
     let [Some(back), Some(ahead)] = sides else { return None };
     let through = continuation(&back, &ahead, node.position, image.line_width);
-    let stems = node.ends.iter().filter_map(|&e| ends[e].as_ref());
+    let stems: Vec<&End> = node.ends.iter().filter_map(|&e| ends[e].as_ref()).collect();
+    if let [a, b] = stems[..]
+        && two_corners([&back, &ahead, &a.tail, &b.tail], node.position, image.line_width).is_some()
+    {
+        return Some(body);
+    }
     let best = stems
+        .into_iter()
         .flat_map(|stem| [back, ahead].map(|side| continuation(&stem.tail, &side, node.position, image.line_width)))
         .min_by(f64::total_cmp)?;
     (best + MARGIN < through && best < LARGEST_TURN).then_some(body)
