@@ -236,7 +236,7 @@ fn a_circle_that_a_line_touches_stays_a_circle_and_a_line() {
     let cases = pairs(&pairs(&pairs(&[14.0, 22.0, 32.0], &[1.0, 0.5, 0.0]), &WIDTHS), &TURNS);
     figures(
         "tangents of circles",
-        0.533,
+        0.562,
         &cases,
         |&(((radius, depth), width), turn)| {
             let touch = polar(CENTER, turn - 90.0, radius + (1.0 - depth) * width);
@@ -258,7 +258,7 @@ fn circles_that_touch_stay_circles() {
     let cases = pairs(&cases, &[false, true]);
     figures(
         "circles that touch",
-        0.083,
+        0.229,
         &cases,
         |&((((large, small), width), turn), inside)| {
             let (large, small) = if inside { (large + 24.0, small) } else { (large, small) };

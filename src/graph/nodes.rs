@@ -14,6 +14,10 @@ use rstar::primitives::GeomWithData;
 const MERGE: f64 = 0.8;
 /// A line's own end sticks out of a tee on that line when it lies further from it than this, in line widths.
 const STICKS_OUT: f64 = 0.6;
+/// Ends that run along a body towards one another meet there when they are no further apart than this, in line widths.
+const ALONG_BODY: f64 = 4.0;
+/// They turn by less than this (20 degrees), from the body and from one to the other.
+const TANGENTIAL: f64 = 0.35;
 /// Ends on a body pair up across it when the stroke turns by less than this (35 degrees).
 const ACROSS_BODY: f64 = 0.61;
 /// Beyond the first pair at a branch, arms pair up when the stroke turns by less than this (60 degrees).
@@ -73,11 +77,13 @@ pub(super) fn resolve(
     // Groups that were solved to the same place are one: stems that meet on a body, a corner beside a tee.
     let places = first.iter().enumerate().map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i));
     let tree = RTree::bulk_load(places.collect());
-    let reach = (MERGE * image.line_width).powi(2);
+    let reach = |widths: f64| (widths * image.line_width).powi(2);
     for a in &first {
-        for near in tree.locate_within_distance([a.position.x, a.position.y], reach) {
+        for near in tree.locate_within_distance([a.position.x, a.position.y], reach(ALONG_BODY)) {
             let b = &first[near.data];
-            if b.ends[0] < a.ends[0] && solver.may_merge(a, b) {
+            let is_close = (a.position - b.position).hypot2() <= reach(MERGE);
+            let meet = if is_close { solver.may_merge(a, b) } else { solver.meet_along_body(a, b) };
+            if b.ends[0] < a.ends[0] && meet {
                 groups.union(a.ends[0], b.ends[0]);
             }
         }
@@ -235,6 +241,24 @@ impl Solver<'_> {
         !folds && (touches_ink(a) || touches_ink(b))
     }
 
+    /// Whether one stroke runs by two tees on one body that it touches, as a circle does a tangent.
+    fn meet_along_body(&self, a: &Node, b: &Node) -> bool {
+        let ([x], [y], [p], [q]) = (&a.ends[..], &b.ends[..], &a.bodies[..], &b.bodies[..]) else { return false };
+        if p.line != q.line {
+            return false;
+        }
+        let (x, y) = (self.end(*x), self.end(*y));
+        let middle = a.position.midpoint(b.position);
+        let along = |end: &End, body: &Place| {
+            let sine = arm_line(&end.tail, middle, self.image.line_width).1.cross(direction(self.lines, *body));
+            sine.abs() < TANGENTIAL.sin()
+        };
+        along(x, p)
+            && along(y, q)
+            && x.tail.heading.dot(y.tail.point - x.tail.point) > 0.0
+            && continuation(&x.tail, &y.tail, middle, self.image.line_width) < TANGENTIAL
+    }
+
     /// Which ends continue in which: least turn first. Two ends that meet alone always do, since their courses can
     /// be misread where both walks went round the corner.
     fn pairs(&self, node: &Node) -> Vec<Pair> {
@@ -257,6 +281,8 @@ impl Solver<'_> {
         for (turn, a, b) in candidates {
             let most = match (node.bodies.is_empty(), pairs.is_empty()) {
                 _ if alone => f64::INFINITY,
+                // A loop that hangs on a body comes back to where it began.
+                (false, _) if a / 2 == b / 2 => LARGEST_TURN,
                 (false, _) => ACROSS_BODY,
                 (true, true) => LARGEST_TURN,
                 (true, false) => LATER_PAIR,
