@@ -81,9 +81,12 @@ pub(super) fn resolve(
     for a in &first {
         for near in tree.locate_within_distance([a.position.x, a.position.y], reach(ALONG_BODY)) {
             let b = &first[near.data];
+            if b.ends[0] >= a.ends[0] {
+                continue;
+            }
             let is_close = (a.position - b.position).hypot2() <= reach(MERGE);
             let meet = if is_close { solver.may_merge(a, b) } else { solver.meet_along_body(a, b) };
-            if b.ends[0] < a.ends[0] && meet {
+            if meet {
                 groups.union(a.ends[0], b.ends[0]);
             }
         }
@@ -262,12 +265,11 @@ impl Solver<'_> {
     /// Which ends continue in which: least turn first. Two ends that meet alone always do, since their courses can
     /// be misread where both walks went round the corner.
     fn pairs(&self, node: &Node) -> Vec<Pair> {
-        if let ([a, b, c, d], true) = (&node.ends[..], node.bodies.is_empty()) {
-            let ends = [*a, *b, *c, *d];
-            let arms = ends.map(|e| &self.end(e).tail);
-            if let Some(corners) = two_corners(arms, node.position, self.image.line_width) {
-                return corners.map(|(arms, turn)| Pair { ends: arms.map(|k| ends[k]), turn }).to_vec();
-            }
+        if let Ok(ends) = <[usize; 4]>::try_from(&node.ends[..])
+            && node.bodies.is_empty()
+            && let Some(corners) = two_corners(ends.map(|e| &self.end(e).tail), node.position, self.image.line_width)
+        {
+            return corners.map(|p| Pair { ends: p.ends.map(|k| ends[k]), ..p }).to_vec();
         }
         let alone = node.bodies.is_empty() && node.ends.len() == 2;
         let mut candidates = Vec::new();
@@ -330,9 +332,9 @@ pub(super) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f6
     angle_between(into, -out).abs() + jump
 }
 
-/// The two corners, with the turn at each, of four arms where corners share their vertex: without them, the smoothest
-/// stroke bends all the same, and leaves two arms beside each other to fold back.
-pub(super) fn two_corners(arms: [&Tail; 4], at: Point, line_width: f64) -> Option<[([usize; 2], f64); 2]> {
+/// The two corners of four arms, by the arms' places in the list, where corners share their vertex: without them, the
+/// smoothest stroke bends all the same, and leaves two arms beside each other to fold back.
+pub(super) fn two_corners(arms: [&Tail; 4], at: Point, line_width: f64) -> Option<[Pair; 2]> {
     let lines = arms.map(|arm| arm_line(arm, at, line_width));
     if lines.iter().any(|(point, heading)| heading.cross(at - *point).abs() > line_width) {
         return None;
@@ -341,12 +343,12 @@ pub(super) fn two_corners(arms: [&Tail; 4], at: Point, line_width: f64) -> Optio
     let headings = lines.map(|(_, heading)| heading);
     around.sort_by(|&a, &b| headings[a].atan2().total_cmp(&headings[b].atan2()));
     let pairing = |k: [usize; 4]| {
-        let turn = |a: usize, b: usize| ([a, b], angle_between(headings[a], -headings[b]).abs());
+        let pair = |a: usize, b: usize| Pair { ends: [a, b], turn: angle_between(headings[a], -headings[b]).abs() };
         let k = k.map(|k| around[k]);
-        [turn(k[0], k[1]), turn(k[2], k[3])]
+        [pair(k[0], k[1]), pair(k[2], k[3])]
     };
-    let least = |pairs: &[([usize; 2], f64); 2]| pairs[0].1.min(pairs[1].1);
-    let most = |pairs: &[([usize; 2], f64); 2]| pairs[0].1.max(pairs[1].1);
+    let least = |[a, b]: &[Pair; 2]| a.turn.min(b.turn);
+    let most = |[a, b]: &[Pair; 2]| a.turn.max(b.turn);
     let (mut folded, mut corners, across) = (pairing([0, 1, 2, 3]), pairing([1, 2, 3, 0]), pairing([0, 2, 1, 3]));
     if least(&corners) < least(&folded) {
         std::mem::swap(&mut folded, &mut corners);

@@ -29,13 +29,13 @@ fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Nod
     let [body] = node.bodies[..] else { return None };
     let sides = [-1, 1].map(|step| course(image, &lines[body.line], body, step, AWAY));
     let [Some(back), Some(ahead)] = sides else { return None };
-    let through = continuation(&back, &ahead, node.position, image.line_width);
     let stems: Vec<&End> = node.ends.iter().filter_map(|&e| ends[e].as_ref()).collect();
     if let [a, b] = stems[..]
         && two_corners([&back, &ahead, &a.tail, &b.tail], node.position, image.line_width).is_some()
     {
         return Some(body);
     }
+    let through = continuation(&back, &ahead, node.position, image.line_width);
     let best = stems
         .into_iter()
         .flat_map(|stem| [back, ahead].map(|side| continuation(&stem.tail, &side, node.position, image.line_width)))

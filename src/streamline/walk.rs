@@ -45,6 +45,15 @@ struct Step {
     drift: f64,
 }
 
+/// A stretch of a walk through ink that is covered already.
+#[derive(Clone, Copy)]
+struct Covered {
+    /// The step at which it began.
+    from: usize,
+    /// The streamline that it runs along.
+    beside: u32,
+}
+
 /// Follows one line from a seed, both ways.
 pub(super) struct Walker<'a, 'b> {
     image: &'a LineImage,
@@ -102,11 +111,10 @@ impl<'a, 'b> Walker<'a, 'b> {
     fn walk(&mut self, mut steps: Vec<Step>, sign: i32) -> (Vec<Step>, Stop, bool) {
         let known = steps.len();
         let limit = 16 * (self.coverage.ink_pixels + 64);
-        let mut covered_from: Option<usize> = None;
+        let mut covered: Option<Covered> = None;
         let (mut free_run, mut covered_run) = (0, 0);
-        // The streamline that the last covered stretch ran along, where that began, and where the walk came out of it.
-        let mut came_out: Option<(u32, usize, usize)> = None;
-        let mut beside = self.id;
+        // The last covered stretch, and where the walk came out of it.
+        let mut came_out: Option<(Covered, usize)> = None;
         loop {
             let index = sign * (steps.len() - known) as i32;
             let here = &steps[steps.len() - 1];
@@ -116,8 +124,8 @@ impl<'a, 'b> Walker<'a, 'b> {
                 streamline: self.id,
                 index,
             });
-            let Some(mut next) = self.advance(&steps, covered_from.is_some()) else {
-                let Some(from) = covered_from else {
+            let Some(mut next) = self.advance(&steps, covered.is_some()) else {
+                let Some(Covered { from, .. }) = covered else {
                     let stop = self.stop_at(here.point);
                     if stop == Stop::Solid {
                         let outside = steps.iter().rposition(|s| !self.is_solid(s.point));
@@ -134,32 +142,35 @@ impl<'a, 'b> Walker<'a, 'b> {
                 && sign > 0
                 && f64::from(mark.index) * STEP < 2.0 * self.width
                 && mark.heading.dot(next.heading) > 0.9
-                && covered_from.is_none()
+                && covered.is_none()
             {
                 return (steps, Stop::Merged, true);
             }
             covered_run = if covering.is_some() { covered_run + 1 } else { 0 };
             let lasting = f64::from(covered_run) * STEP > self.width;
-            match (covering, covered_from) {
+            match (covering, covered) {
                 (Some(mark), None) if lasting || !next.width.is_nan() => {
-                    let back = came_out.filter(|(line, _, out)| {
-                        *line == mark.streamline && (steps.len() - out) as f64 * STEP < BACK_IN * self.width
+                    let back = came_out.filter(|(last, out)| {
+                        last.beside == mark.streamline && (steps.len() - out) as f64 * STEP < BACK_IN * self.width
                     });
-                    covered_from = Some(back.map_or(steps.len(), |(_, from, _)| from));
-                    beside = mark.streamline;
+                    let from = back.map_or(steps.len(), |(last, _)| last.from);
+                    covered = Some(Covered { from, beside: mark.streamline });
                 }
-                (Some(mark), Some(_)) => (free_run, beside) = (0, mark.streamline),
-                (None, Some(from)) => {
+                (Some(mark), Some(stretch)) => {
+                    free_run = 0;
+                    covered = Some(Covered { beside: mark.streamline, ..stretch });
+                }
+                (None, Some(stretch)) => {
                     free_run += 1;
                     if f64::from(free_run) * STEP > 0.75 * self.width {
-                        came_out = Some((beside, from, steps.len()));
-                        covered_from = None;
+                        came_out = Some((stretch, steps.len()));
+                        covered = None;
                         free_run = 0;
                     }
                 }
                 _ => {}
             }
-            if let Some(from) = covered_from {
+            if let Some(Covered { from, .. }) = covered {
                 next.width = f64::NAN;
                 if (steps.len() - from) as f64 * STEP > COAST_COVERED * self.width {
                     steps.truncate(from.max(known));

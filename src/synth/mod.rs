@@ -6,6 +6,8 @@ mod placed;
 mod scan;
 mod shapes;
 
+#[cfg(test)]
+pub(crate) use placed::mapped;
 pub use placed::placed;
 pub use scan::{ScanStyle, clean_ink, scan};
 

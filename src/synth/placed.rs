@@ -50,7 +50,7 @@ pub fn placed(rng: &mut impl Rng, drawing: &Drawing, size: usize) -> Option<Draw
 }
 
 /// A centreline under a similarity, its arcs as cubics.
-fn mapped(centreline: &Centreline, map: Affine) -> Centreline {
+pub(crate) fn mapped(centreline: &Centreline, map: Affine) -> Centreline {
     match centreline {
         Centreline::Path { segments, closed } => {
             Centreline::Path { segments: segments.iter().flat_map(|s| pieces(s, map)).collect(), closed: *closed }

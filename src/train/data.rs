@@ -107,9 +107,9 @@ fn unit(z: Complex32) -> Complex32 {
     if z.norm() > 1e-6 { z / z.norm() } else { z }
 }
 
-/// The random numbers of a sheet of the training data.
-pub(super) fn stream(config: &TrainConfig, number: u64) -> ChaCha8Rng {
-    let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+/// The random numbers of a seed's sheet, step or epoch.
+pub(super) fn stream(seed: u64, number: u64) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(number);
     rng
 }
@@ -121,7 +121,7 @@ pub(super) fn sheet(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig)
 
 /// The crops of one drawing. The same seed and number give the same crops.
 fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
-    let mut rng = stream(config, number);
+    let mut rng = stream(config.seed, number);
     let Sight { ink, truth } = sheet(&mut rng, source, config);
     let whole = Sample::new(&ink, &truth, config.network.input);
     let (width, height) = ink.size();
@@ -152,9 +152,7 @@ fn sheets(config: &TrainConfig, step: usize) -> Vec<u64> {
         let (pass, place) = (n / config.images, n % config.images);
         if epoch.0 != pass {
             let mut order: Vec<u64> = (0..config.images as u64).collect();
-            let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x0bde_2ed0);
-            rng.set_stream(pass as u64);
-            order.shuffle(&mut rng);
+            order.shuffle(&mut stream(config.seed ^ 0x0bde_2ed0, pass as u64));
             epoch = (pass, order);
         }
         epoch.1[place]
@@ -164,8 +162,7 @@ fn sheets(config: &TrainConfig, step: usize) -> Vec<u64> {
 
 /// The crops of a step's sheets as one sample, each laid down at random where the configuration says so.
 fn joined(config: &TrainConfig, step: usize, crops: impl Iterator<Item = Sample>) -> Sample {
-    let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x7042_0a11);
-    rng.set_stream(step as u64);
+    let mut rng = stream(config.seed ^ 0x7042_0a11, step as u64);
     Sample::stacked(crops.map(|c| if config.turns { c.turned(Turn::draw(&mut rng), config.crop) } else { c }))
 }
 

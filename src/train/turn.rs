@@ -51,15 +51,17 @@ impl Sample {
         // The input is the ink and then second and fourth moments, as far as the network is shown them.
         let input = [1.0, re2, im2, re4, im4, re2, im2, re4, im4];
         let signs: [&[f32]; 5] = [&input, &field, &field, &[re2, im2, re2, im2], &[1.0; 3]];
+        let place = |i: usize| {
+            let (x, y) = turn.moved((i % side, i / side), side);
+            y * side + x
+        };
+        let places: Vec<usize> = (0..side * side).map(place).collect();
         let mut out = Self::default();
         for ((from, to), signs) in self.planes().into_iter().zip(out.planes_mut()).zip(signs) {
             to.resize(from.len(), 0.0);
             let planes = from.chunks_exact(side * side).zip(to.chunks_exact_mut(side * side));
             for ((from, to), sign) in planes.zip(signs) {
-                for (i, value) in from.iter().enumerate() {
-                    let (x, y) = turn.moved((i % side, i / side), side);
-                    to[y * side + x] = sign * value;
-                }
+                from.iter().zip(&places).for_each(|(value, &place)| to[place] = sign * value);
             }
         }
         out
@@ -69,12 +71,12 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::{Centreline, Drawing, Segment};
+    use crate::drawing::Drawing;
     use crate::raster::Raster;
     use crate::render::render;
     use crate::unet::Input;
     use crate::{ground_truth, synth};
-    use kurbo::{Affine, PathSeg};
+    use kurbo::Affine;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
@@ -84,19 +86,14 @@ mod tests {
         (0..8).map(|n| Turn { swapped: n >= 4, quarters: n % 4 })
     }
 
-    /// A drawing laid down otherwise, its pieces all lines and cubics.
+    /// A drawing laid down otherwise.
     fn turned(drawing: &Drawing, turn: Turn) -> Drawing {
         let swap = if turn.swapped { Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]) } else { Affine::IDENTITY };
         let quarter = Affine::new([0.0, 1.0, -1.0, 0.0, SIDE as f64, 0.0]);
         let map = (0..turn.quarters).fold(swap, |map, _| quarter * map);
         let mut drawing = drawing.clone();
         for stroke in &mut drawing.strokes {
-            let path = map * stroke.centreline.to_path();
-            let piece = |s: PathSeg| match s {
-                PathSeg::Line(line) => Segment::Line(line),
-                curve => Segment::Cubic(curve.to_cubic()),
-            };
-            stroke.centreline = Centreline::Path { segments: path.segments().map(piece).collect(), closed: false };
+            stroke.centreline = synth::mapped(&stroke.centreline, map);
         }
         drawing
     }

@@ -13,8 +13,6 @@ use crate::unet::{Features, UNet, features};
 use burn::tensor::{Device, Tensor, TensorData};
 use kurbo::Vec2;
 use num_complex::Complex32;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -87,12 +85,11 @@ impl Validator {
             Sheet { truth: sight.truth, ink, features }
         };
         if config.validation_sheets == 0 {
-            let own = |n| sheet(data::sheet(&mut data::stream(config, n), source, config));
+            let own = |n| sheet(data::sheet(&mut data::stream(config.seed, n), source, config));
             return Self { kinds: vec![(0..config.images as u64).map(own).collect()] };
         }
         let held_out = |n: u64, scanned| {
-            let mut rng = ChaCha8Rng::seed_from_u64(config.seed ^ 0x5eed_07a1_1da7);
-            rng.set_stream(n);
+            let mut rng = data::stream(config.seed ^ 0x5eed_07a1_1da7, n);
             sheet(sight(&mut rng, source, config, |_| scanned))
         };
         let kinds: &[bool] = if config.has_scans() { &[false, true] } else { &[false] };
