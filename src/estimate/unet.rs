@@ -31,7 +31,7 @@ const MARGIN: usize = 2;
 
 /// Standard deviation in line widths of the smoothing along the ink that takes the noise of single pixels out of the
 /// network's field: [`PolyVectorField::smoothed`].
-const SMOOTHING: f64 = 1.0;
+const SMOOTHING: f64 = 2.25;
 
 /// The field from the U-Net: Taktasheva et al. 2019.
 #[derive(Debug)]
@@ -112,7 +112,7 @@ impl FieldEstimator for UNet {
         };
         cancel.check()?;
         let field = PolyVectorField::from_parts(width, height, parts);
-        Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(1.0, 8.0)))
+        Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(2.0, 10.0)))
     }
 }
 
