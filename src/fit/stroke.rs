@@ -12,6 +12,9 @@ use kurbo::{Circle, Line, Point, Vec2};
 /// A flagged corner that turns by less than this (22 degrees) is no corner.
 const LEAST_TURN: f64 = 0.38;
 
+/// A line that passes a corner's node by more than this, in line widths, is not bent to end there.
+const ASIDE: f64 = 0.75;
+
 /// The centreline of a trail; `None` when it has no extent.
 pub(super) fn fit_trail(walk: &[TrailPoint], closed: bool, tolerance: Tolerance) -> Option<Centreline> {
     let mut walk: Vec<TrailPoint> = walk.to_vec();
@@ -79,15 +82,16 @@ fn open(walk: &[TrailPoint], corners: &[usize], tolerance: Tolerance) -> Vec<Seg
     let mut bounds = vec![0];
     bounds.extend_from_slice(corners);
     bounds.push(walk.len() - 1);
-    let mut sections: Vec<Vec<Segment>> = bounds.windows(2).map(|b| section(&walk[b[0]..=b[1]], tolerance)).collect();
-    for k in 1..sections.len() {
-        let (before, after) = sections.split_at_mut(k);
-        let (a, b) = (before[k - 1].last_mut(), after[0].first_mut());
-        if let (Some(a), Some(b)) = (a, b) {
-            sharpen(a, b, walk[bounds[k]].point, tolerance);
+    let sections = bounds.windows(2).map(|b| section(&walk[b[0]..=b[1]], tolerance));
+    let mut out: Vec<Segment> = Vec::new();
+    for (mut next, &bound) in sections.zip(&bounds) {
+        if let (Some(a), Some(b)) = (out.last_mut(), next.first_mut()) {
+            let between = sharpen(a, b, walk[bound].point, tolerance);
+            out.extend(between);
         }
+        out.append(&mut next);
     }
-    sections.concat()
+    out
 }
 
 /// The segments of one section; its ends are kept.
@@ -101,17 +105,19 @@ fn section(walk: &[TrailPoint], tolerance: Tolerance) -> Vec<Segment> {
     join(&samples, &pieces, false, [Some(first), Some(last)], tolerance)
 }
 
-/// Lets two segments end at one corner: where their lines cross if both are lines, else at the node.
-fn sharpen(a: &mut Segment, b: &mut Segment, node: Point, tolerance: Tolerance) {
+/// Lets two segments end at one corner: where their lines cross if both are lines, else at the node. Lines of
+/// which one passes far from the node keep their courses, and what leads from one to the other is returned.
+fn sharpen(a: &mut Segment, b: &mut Segment, node: Point, tolerance: Tolerance) -> Option<Segment> {
     let mut point = node;
     if let (Segment::Line(l), Segment::Line(m)) = (&*a, &*b) {
         let (d, e) = (l.p1 - l.p0, m.p1 - m.p0);
         let det = d.cross(e);
-        if det.abs() > 0.15 * d.hypot() * e.hypot() {
-            let crossing = l.p0 + d * ((m.p0 - l.p0).cross(e) / det);
-            if (crossing - node).hypot() < tolerance.width {
-                point = crossing;
-            }
+        let crosses = det.abs() > 0.15 * d.hypot() * e.hypot();
+        let crossing = l.p0 + d * ((m.p0 - l.p0).cross(e) / det);
+        if crosses && (crossing - node).hypot() < tolerance.width {
+            point = crossing;
+        } else if (l.p1 - node).hypot().max((m.p0 - node).hypot()) > ASIDE * tolerance.width {
+            return Some(Segment::Line(Line::new(l.p1, m.p0)));
         }
     } else if let Segment::Line(l) = &*a {
         point = l.p1;
@@ -120,12 +126,14 @@ fn sharpen(a: &mut Segment, b: &mut Segment, node: Point, tolerance: Tolerance) 
     }
     set_end(a, point);
     set_start(b, point);
+    None
 }
 
-fn close_corner(segments: &mut [Segment], tolerance: Tolerance) {
-    if let [first, .., last] = segments {
+fn close_corner(segments: &mut Vec<Segment>, tolerance: Tolerance) {
+    if let [first, .., last] = segments.as_mut_slice() {
         let node = first.start().midpoint(last.end());
-        sharpen(last, first, node, tolerance);
+        let between = sharpen(last, first, node, tolerance);
+        segments.extend(between);
     }
 }
 
@@ -197,4 +205,30 @@ fn circle(samples: &Samples, tolerance: Tolerance) -> Option<Circle> {
     let worst = off.map(|(p, w)| ((*p - circle.centre).hypot() - circle.radius).abs() * w).fold(0.0, f64::max);
     let limit = tolerance.fit.max(1.5 * samples.scatter(tolerance.width));
     (deviation < limit && worst < 3.0 * limit).then(|| Circle::new(circle.centre, circle.radius))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kurbo::ParamCurveNearest;
+
+    #[test]
+    fn a_node_beside_two_lines_bends_neither() {
+        for aside in [3.0, 5.0, 8.0] {
+            let point = |x: f64, y: f64, corner: bool| TrailPoint { point: Point::new(x, y), width: 3.0, corner };
+            let mut walk: Vec<TrailPoint> = (0..80).map(|k| point(0.5 * f64::from(k), 0.0, false)).collect();
+            walk.push(point(42.0, aside, true));
+            walk.extend((0..100).map(|k| point(52.0, 10.0 + 0.5 * f64::from(k), false)));
+            let tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.15 };
+            let Some(Centreline::Path { segments, .. }) = fit_trail(&walk, false, tolerance) else { panic!("no line") };
+            for p in walk.iter().filter(|p| !p.corner).map(|p| p.point) {
+                let nearest = segments.iter().map(|s| match s {
+                    Segment::Line(l) => l.nearest(p, 1e-6).distance_sq.sqrt(),
+                    _ => f64::MAX,
+                });
+                let off = nearest.fold(f64::MAX, f64::min);
+                assert!(off < 0.5, "{p:?} is {off} off with the node {aside} aside");
+            }
+        }
+    }
 }

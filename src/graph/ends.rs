@@ -14,6 +14,9 @@ const BLUR: f64 = 0.4;
 /// The same where a line was cut because it had taken the wrong arm.
 const CUT_BLUR: f64 = 2.0;
 
+/// For how many line widths a line must be alone before its end for that to be its course.
+const LASTING: f64 = 0.5;
+
 /// One end of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
@@ -55,7 +58,11 @@ fn end(image: &LineImage, lines: &[Streamline], line: usize, side: usize) -> Opt
     // Indices counted from this end.
     let index = |k: usize| if side == 0 { k } else { n - 1 - k };
     let width = median_width(streamline, index, image.line_width);
-    let tip = (0..n).find(|&k| streamline.widths[index(k)].is_finite()).unwrap_or(n / 2);
+    let alone = |k: usize| streamline.widths[index(k)].is_finite();
+    // Where several lines end, the corner of their ink can look like a line of its own.
+    let lasting = (LASTING * width / STEP) as usize;
+    let long = (0..n / 2).find(|&k| (k..(k + lasting).min(n)).all(alone));
+    let tip = long.or_else(|| (0..n).find(|&k| alone(k))).unwrap_or(n / 2);
     let overrun = tip as f64 * STEP;
     let blur = match streamline.stops[side] {
         Stop::Cut => CUT_BLUR,

@@ -6,8 +6,9 @@
 //! and `y = m u + c u^2 / 2` for a line that meets it at an angle. The `s0` that explains the edge best, in least squares,
 //! is the node; up to where the line is alone again, its middle is what was solved.
 
-use super::contacts::{LineIndex, Place, direction_at, width_at};
+use super::contacts::{LineIndex, Place, direction, direction_at, point_at, width_at};
 use super::ends::{End, ends};
+use super::nodes::arm_line;
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Point, Vec2};
@@ -16,6 +17,8 @@ use rayon::prelude::*;
 /// A body is looked for within this many line widths of an end, running along it within this cosine's angle (50 degrees).
 const NEAR: f64 = 1.2;
 const ALONG: f64 = 0.64;
+/// The end's course, drawn out to the body, comes in within this cosine's angle (35 degrees).
+const ARRIVING: f64 = 0.82;
 /// The edge is measured from this many line widths before the end's last point on the body, to that many after it.
 const BEFORE: f64 = 6.0;
 const AFTER: f64 = 8.0;
@@ -124,6 +127,10 @@ impl Leave {
 fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Course> {
     let lw = image.line_width;
     let body = body(lines, index, end, NEAR * lw)?;
+    let arriving = arm_line(&end.tail, point_at(&lines[body.line], body.at), lw).1;
+    if arriving.dot(direction(lines, body)).abs() < ARRIVING {
+        return None;
+    }
     let frame = Frame::new(lines, body, end, lw)?;
     let widths = [end.width, width_at(lines, body, lw)];
     let own = frame.own(&lines[end.line], end.side, APART.max(ALONE) * lw + lw);
