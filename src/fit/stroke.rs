@@ -221,13 +221,14 @@ mod tests {
             walk.extend((0..100).map(|k| point(52.0, 10.0 + 0.5 * f64::from(k), false)));
             let tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.15 };
             let Some(Centreline::Path { segments, .. }) = fit_trail(&walk, false, tolerance) else { panic!("no line") };
-            for p in walk.iter().filter(|p| !p.corner).map(|p| p.point) {
+            // Beside the node itself anything goes.
+            for p in walk.iter().map(|p| p.point).filter(|p| p.x < 36.0 || p.y > 16.0) {
                 let nearest = segments.iter().map(|s| match s {
                     Segment::Line(l) => l.nearest(p, 1e-6).distance_sq.sqrt(),
                     _ => f64::MAX,
                 });
                 let off = nearest.fold(f64::MAX, f64::min);
-                assert!(off < 0.5, "{p:?} is {off} off with the node {aside} aside");
+                assert!(off < 0.3, "{p:?} is {off} off with the node {aside} aside");
             }
         }
     }
