@@ -161,6 +161,21 @@ fn corners_that_share_their_vertex_stay_two() {
 }
 
 #[test]
+fn a_corner_that_stands_on_a_line_is_one_stroke() {
+    let cases = pairs(&pairs(&[40.0, 60.0, 90.0, 120.0], &WIDTHS[..4]), &TURNS);
+    figures(
+        "corners on a line",
+        0.5,
+        &cases,
+        |&((opening, width), turn)| {
+            let arm = |side: f64| polar(CENTER, turn + 90.0 + 0.5 * side * opening, 50.0);
+            page(vec![bar(CENTER, turn, 54.0, width), polyline(&[arm(-1.0), CENTER, arm(1.0)], false, width)])
+        },
+        |&((_, width), _), truth, traced| same_strokes(truth, traced, slack(width)),
+    );
+}
+
+#[test]
 fn a_loop_that_crosses_itself_is_one_stroke() {
     // The flatter the loop, the shallower its crossing.
     let cases = pairs(&pairs(&[20.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);
@@ -187,8 +202,9 @@ fn a_loop_that_crosses_itself_is_one_stroke() {
 }
 
 #[test]
-fn a_stroke_that_ends_on_its_own_body_is_one_stroke() {
-    // Like the digit 6: a stem that rounds into a circle and comes back to where the circle began.
+fn a_stroke_that_ends_on_its_own_body_is_one_stroke_or_a_stem_on_a_ring() {
+    // Like the digit 6: a stem that rounds into a circle and comes back to where the circle began. A circle that a line
+    // touches with its end looks the same.
     let cases = pairs(&pairs(&[14.0, 20.0, 26.0], &WIDTHS), &[0.0, 60.0, 150.0, 270.0]);
     let middle = |turn: f64| polar(CENTER, turn, 20.0);
     figures(
@@ -207,7 +223,8 @@ fn a_stroke_that_ends_on_its_own_body_is_one_stroke() {
         |&((radius, width), _), truth, traced| {
             // Where the two lines part cannot be seen until there is paper between them.
             let parting = (2.0 * radius * width).sqrt();
-            ensure(traced.strokes.len() == 1, || format!("{} strokes", traced.strokes.len()))?;
+            let rings = traced.strokes.iter().filter(|s| s.centreline.is_closed()).count();
+            ensure(traced.strokes.len() == 1 + rings, || format!("{} strokes", traced.strokes.len()))?;
             let (a, b) = (nodes(truth, width), nodes(traced, width));
             ensure(b.junctions.len() == 1 && b.ends.len() == 1, || format!("{:?}", (b.junctions.len(), b.ends.len())))?;
             let off = nearest(a.ends[0], &b.ends);

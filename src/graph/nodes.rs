@@ -20,6 +20,8 @@ const ALONG_BODY: f64 = 4.0;
 const TANGENTIAL: f64 = 0.35;
 /// Ends on a body pair up across it when the stroke turns by less than this (35 degrees).
 const ACROSS_BODY: f64 = 0.61;
+/// Two ends on one side of a body are a V that stands on it when their angles to it differ by less than this (10 degrees).
+const AS_STEEP: f64 = 0.17;
 /// Beyond the first pair at a branch, arms pair up when the stroke turns by less than this (60 degrees).
 const LATER_PAIR: f64 = 1.05;
 /// Arms never pair up when the stroke would turn by more than this (170 degrees).
@@ -283,6 +285,7 @@ impl Solver<'_> {
         for (turn, a, b) in candidates {
             let most = match (node.bodies.is_empty(), pairs.is_empty()) {
                 _ if alone => f64::INFINITY,
+                _ if self.stands(node, &pairs, [a, b]) => LARGEST_TURN,
                 // A loop that hangs on a body comes back to where it began.
                 (false, _) if a / 2 == b / 2 => LARGEST_TURN,
                 (false, _) => ACROSS_BODY,
@@ -295,6 +298,18 @@ impl Solver<'_> {
             }
         }
         pairs
+    }
+
+    /// Whether two ends stand on the only line through a node as a V does: on one side of it, each as steep as the other.
+    fn stands(&self, node: &Node, pairs: &[Pair], [a, b]: [usize; 2]) -> bool {
+        let arm = |end: usize| arm_line(&self.end(end).tail, node.position, self.image.line_width).1;
+        let along = match (node.ends.len(), &node.bodies[..], pairs) {
+            (2, [body], []) => direction(self.lines, *body),
+            (4, [], [line]) if line.turn < STRAIGHT => arm(line.ends[0]),
+            _ => return false,
+        };
+        let mirrored = arm(b) - along * (2.0 * arm(b).dot(along));
+        angle_between(arm(a), mirrored).abs() < AS_STEEP
     }
 
     /// The cost of a stroke that comes in by one end and leaves by another.
