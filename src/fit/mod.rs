@@ -14,6 +14,7 @@ mod samples;
 mod segmentation;
 mod solid;
 mod stroke;
+mod vertices;
 
 use crate::cancel::Cancel;
 use crate::clean::unblurred_width;
@@ -90,6 +91,7 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
             Drawn::Outlines(outlines) => drawing.fills.extend(outlines),
         }
     }
+    vertices::meet(&mut drawing.strokes, tolerance);
     drawing.strokes.extend(graph.dots.iter().map(|dot| Stroke {
         centreline: Centreline::Dot(dot.centre),
         width: dot.diameter,

@@ -138,7 +138,7 @@ fn close_corner(segments: &mut Vec<Segment>, tolerance: Tolerance) {
 }
 
 /// Moves the end of a segment by a small amount.
-fn set_end(segment: &mut Segment, point: Point) {
+pub(super) fn set_end(segment: &mut Segment, point: Point) {
     match segment {
         Segment::Line(l) => l.p1 = point,
         Segment::Cubic(c) => {
@@ -150,7 +150,7 @@ fn set_end(segment: &mut Segment, point: Point) {
 }
 
 /// Moves the start of a segment by a small amount.
-fn set_start(segment: &mut Segment, point: Point) {
+pub(super) fn set_start(segment: &mut Segment, point: Point) {
     match segment {
         Segment::Line(l) => l.p0 = point,
         Segment::Cubic(c) => {
