@@ -81,10 +81,13 @@ fn keeps_to_axis(segment: &Segment) -> bool {
     matches!(segment, Segment::Line(l) if (l.p1.x - l.p0.x).abs().min((l.p1.y - l.p0.y).abs()) < 1e-6)
 }
 
+/// The box of a piece, the number of its stroke and its own in the stroke's path.
+type Boxed = GeomWithData<Rectangle<[f64; 2]>, (usize, usize)>;
+
 /// All pieces of all strokes, findable by place.
 struct Lines {
     paths: Vec<BezPath>,
-    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, (usize, usize)>>,
+    tree: RTree<Boxed>,
 }
 
 impl Lines {
