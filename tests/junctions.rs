@@ -82,6 +82,24 @@ fn a_line_ends_half_a_width_before_its_ink() {
 }
 
 #[test]
+fn lines_are_on_average_as_long_as_they_were_drawn() {
+    let cases = pairs(&WIDTHS[1..], &[false, true]);
+    sweep("mean lengths", 1.0, &cases, |&(width, pencil)| {
+        let off = |&angle: &f64| {
+            let (a, b) = (polar(CENTER, angle, -36.0), polar(CENTER, angle, 36.0));
+            let clean = scan(&sheet(96, 96, vec![line(a, b, width)]));
+            let paper = Paper { specks: 0.0, ..Paper::PENCIL };
+            let seen = if pencil { scan_of(paper.scan(&clean.gray, angle as u64)) } else { clean };
+            trace(&seen).length() - a.distance(b)
+        };
+        let angles = steps(0.0, 175.0, 5.0);
+        let mean = angles.iter().map(off).sum::<f64>() / angles.len() as f64;
+        let most = if pencil { 0.3 } else { 0.1 };
+        ensure(mean.abs() <= most, || format!("lines are {mean:.3} longer"))
+    });
+}
+
+#[test]
 fn an_arc_ends_half_a_width_before_its_ink() {
     let cases = pairs(&steps(45.0, 315.0, 45.0), &WIDTHS);
     sweep("ends of arcs", 1.0, &cases, |&(sweep, width)| {

@@ -42,6 +42,8 @@ pub(super) struct Pair {
     pub turn: f64,
 }
 
+/// Standard deviation of what pixels blur by themselves, in pixels of the scan: that of a square of one pixel.
+const PIXEL: f64 = 0.29;
 /// How far past the last point of a walk its ink may go on, in pixels.
 const LOOK_AHEAD: f64 = 2.5;
 /// A jump in curvature counts as the turn that it makes over this many line widths.
@@ -225,9 +227,10 @@ impl Solver<'_> {
         let steps = ((end.width + LOOK_AHEAD) / 0.125) as usize;
         let along = |k: usize| -end.width + 0.125 * k as f64;
         let edge = (0..steps).map(along).find(|&s| ink(s) < 0.5).unwrap_or_else(|| near_side_of_gap(ink));
+        let drawn_in = blurred_cap(self.image.blur.max(PIXEL * self.image.scale), width);
         // Never past the middle of a short line.
         let half_length = 0.5 * (n as f64 - 1.0) * STEP;
-        end.point + heading * (edge - 0.5 * width).max(-half_length + 0.25)
+        end.point + heading * (edge + drawn_in - 0.5 * width).max(-half_length + 0.25)
     }
 
     /// Two groups are one unless that would fold a short line onto itself.
@@ -316,6 +319,13 @@ impl Solver<'_> {
     fn turn(&self, a: usize, b: usize, at: Point) -> f64 {
         continuation(&self.end(a).tail, &self.end(b).tail, at, self.image.line_width)
     }
+}
+
+/// How far inside the edge of a round cap half of the ink is left under a blur of variance `v`: `v / w` to second order
+/// for a pen of width `w`, less where the blur is as wide as the pen.
+fn blurred_cap(blur: f64, width: f64) -> f64 {
+    let (variance, width) = (blur.powi(2), width.max(1.0));
+    variance / (width + 8.0 * variance / width)
 }
 
 /// Where the ink along a line ends when another line lies so near behind it that no paper shows between: half of
