@@ -19,6 +19,8 @@ const NEAR: f64 = 1.2;
 const ALONG: f64 = 0.64;
 /// The end's course, drawn out to the body, comes in within this cosine's angle (35 degrees).
 const ARRIVING: f64 = 0.82;
+/// A line that comes in at an angle meets the body this many line widths from its ends.
+const CLEAR: f64 = 2.0;
 /// The edge is measured from this many line widths before the end's last point on the body, to that many after it.
 const BEFORE: f64 = 6.0;
 const AFTER: f64 = 8.0;
@@ -147,6 +149,11 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
     }
     let deviation = (leave.error / samples.len() as f64).sqrt();
     if deviation > (MISFIT * lw).max(MISFIT_PIXELS) {
+        return None;
+    }
+    // Where the body ends as well, two lines make a corner.
+    let goes_on = |s: f64| frame.index(s).is_some();
+    if leave.slope > 0.0 && !(goes_on(leave.s0 - CLEAR * lw) && goes_on(leave.s0 + CLEAR * lw)) {
         return None;
     }
     let last = own[alone].0.s;
