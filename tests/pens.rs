@@ -38,7 +38,7 @@ fn a_line_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(0.0, 170.0, 10.0), &PENS);
     figures(
         "ends of lines of every width",
-        0.733,
+        0.755,
         &cases,
         |&(angle, width)| {
             let center = CENTER + kurbo::Vec2::new(0.3, 0.7);
@@ -60,7 +60,7 @@ fn an_arc_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(60.0, 300.0, 60.0), &PENS);
     figures(
         "ends of arcs of every width",
-        0.76,
+        0.72,
         &cases,
         |&(sweep, width)| page(vec![arc(CENTER, 64.0, 0.3, sweep.to_radians(), width)]),
         |_, truth, traced| {
@@ -137,7 +137,7 @@ fn lines_of_two_widths_cross_straight() {
 fn a_thin_line_that_ends_on_a_wide_one_is_a_tee() {
     figures(
         "two pens in a tee",
-        0.309,
+        0.357,
         &pairs(&two_pens(), &[90.0, 60.0]),
         |&((wide, thin), slant)| {
             let bar = line(polar(CENTER, 10.0, -80.0), polar(CENTER, 10.0, 80.0), wide);

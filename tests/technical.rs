@@ -66,7 +66,7 @@ fn lines_that_run_together_are_two() {
     let cases = pairs(&pairs(&[6.0, 9.0, 12.0, 16.0], &WIDTHS), &TURNS);
     figures(
         "wedges",
-        0.843,
+        0.875,
         &cases,
         |&((between, width), turn)| {
             let tip = polar(CENTER, turn, -54.0);
@@ -142,7 +142,7 @@ fn hatching_in_a_frame_ends_on_the_frame() {
         strokes.extend(hatching(CENTER, 44.0, angle, gap * width).iter().map(|l| line(l.p0, l.p1, width)));
         page(strokes)
     };
-    figures("hatching in a frame", 0.259, &cases, drawn, |&(_, width), truth, traced| {
+    figures("hatching in a frame", 0.333, &cases, drawn, |&(_, width), truth, traced| {
         same_strokes(truth, traced, 0.3 * width + 0.5)?;
         let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
         ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
@@ -154,7 +154,7 @@ fn an_open_arrow_head_is_a_corner_at_the_end_of_a_shaft() {
     let cases = pairs(&pairs(&pairs(&[15.0, 20.0, 30.0, 45.0], &[5.0, 8.0]), &WIDTHS), &[0.0, 17.0, 90.0, 225.0]);
     figures(
         "open arrow heads",
-        0.601,
+        0.695,
         &cases,
         |&(((opening, size), width), turn)| {
             let tip = polar(CENTER, turn, 46.0);
@@ -279,7 +279,7 @@ fn an_upright_rectangle_in_pencil_keeps_to_the_axes_exactly() {
     let cases = pairs(&[2.0, 3.0, 4.0, 6.0, 8.0], &shifts);
     figures_on(
         "upright rectangles in pencil",
-        0.7,
+        0.85,
         &cases,
         |&(width, shift)| rectangle(shift, width),
         |&(width, shift), drawing| pencil(drawing, width + shift.x),
@@ -292,7 +292,7 @@ fn a_long_pencil_line_does_not_wobble() {
     let cases = pairs(&steps(0.0, 175.0, 12.5), &[2.0, 3.0, 4.5, 7.0]);
     figures_on(
         "long pencil lines",
-        0.866,
+        0.816,
         &cases,
         |&(angle, width)| {
             let center = Point::new(150.0, 150.0);
