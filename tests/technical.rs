@@ -292,7 +292,7 @@ fn a_long_pencil_line_does_not_wobble() {
     let cases = pairs(&steps(0.0, 175.0, 12.5), &[2.0, 3.0, 4.5, 7.0]);
     figures_on(
         "long pencil lines",
-        0.816,
+        0.95,
         &cases,
         |&(angle, width)| {
             let center = Point::new(150.0, 150.0);

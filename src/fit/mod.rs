@@ -26,8 +26,8 @@ use rayon::prelude::*;
 
 /// Deviation of points that is always taken for noise, as a share of the fit tolerance: on a clean render, and on a
 /// scan, where grain moves whole stretches of a line and neighbouring points do not show it.
-const STEADINESS: f64 = 0.26;
-const STEADINESS_NOISY: f64 = 0.275;
+const STEADINESS: f64 = 0.27;
+const STEADINESS_NOISY: f64 = 0.3;
 
 /// How closely to fit, in pixels of the line image.
 #[derive(Clone, Copy, Debug)]
