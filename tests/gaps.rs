@@ -3,7 +3,7 @@
 mod common;
 
 use common::compare::{apart, bow, common_ink, lines};
-use common::draw::{arc, line, polar, rendered, scan, scan_of, sheet};
+use common::draw::{arc, line, on_paper, polar, rendered, scan, scan_of, sheet};
 use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Dashes, Drawing, Stroke};
@@ -24,10 +24,6 @@ fn page(strokes: Vec<Stroke>) -> Drawing {
 fn traced(scan: &Scan, gap: Option<f64>, dashes: Dashing) -> Drawing {
     let options = Options { gap, dashes, ..Options::default() };
     Vectorizer::new(options).unwrap().trace(scan).unwrap()
-}
-
-fn on_paper(drawing: &Drawing, paper: Paper, seed: u64) -> Scan {
-    scan_of(paper.scan(&scan(drawing).gray, seed))
 }
 
 /// A line in two parts with so much paper between them, in line widths.

@@ -6,9 +6,7 @@
 mod common;
 
 use common::compare::{apart, body_apart, bow, ends_apart, ends_of, lines, straight_pieces};
-use common::draw::{Pen, scan_of};
-use common::draw::{arc, circle, dot, line, polar, polyline, scan, scan_by, sheet, trace};
-use common::paper::Paper;
+use common::draw::{Pen, SPECKLESS, arc, circle, dot, line, on_paper, polar, polyline, scan, scan_by, sheet, trace};
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Centreline, Drawing, Fill, Stroke};
 use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
@@ -87,9 +85,8 @@ fn lines_are_on_average_as_long_as_they_were_drawn() {
     sweep("mean lengths", 1.0, &cases, |&(width, pencil)| {
         let off = |&angle: &f64| {
             let (a, b) = (polar(CENTER, angle, -36.0), polar(CENTER, angle, 36.0));
-            let clean = scan(&sheet(96, 96, vec![line(a, b, width)]));
-            let paper = Paper { specks: 0.0, ..Paper::PENCIL };
-            let seen = if pencil { scan_of(paper.scan(&clean.gray, angle as u64)) } else { clean };
+            let drawing = sheet(96, 96, vec![line(a, b, width)]);
+            let seen = if pencil { on_paper(&drawing, SPECKLESS, angle as u64) } else { scan(&drawing) };
             trace(&seen).length() - a.distance(b)
         };
         let angles = steps(0.0, 175.0, 5.0);
@@ -136,9 +133,7 @@ fn a_pencil_line_is_one_line() {
     let cases = cases(&steps(0.0, 170.0, 10.0), &WIDTHS, &OFFSETS[..1]);
     sweep("pencil lines", 1.0, &cases, |&(angle, width, offset)| {
         let truth = [line(polar(CENTER, angle, -36.0) + offset, polar(CENTER, angle, 36.0) + offset, width)];
-        let clean = scan(&sheet(96, 96, truth.to_vec()));
-        let pencil = Paper { specks: 0.0, ..Paper::PENCIL };
-        like(&truth, &trace(&scan_of(pencil.scan(&clean.gray, angle as u64))), 0.4, 1.5)
+        like(&truth, &trace(&on_paper(&sheet(96, 96, truth.to_vec()), SPECKLESS, angle as u64)), 0.4, 1.5)
     });
 }
 
@@ -228,8 +223,7 @@ fn pencil_stem(turn: f64, width: f64, gap: Option<f64>) -> Result<f64, String> {
     let short = gap.map_or(0.0, |gap| width + gap);
     let bar = line(polar(CENTER, turn, -38.0), polar(CENTER, turn, 38.0), width);
     let stem = line(polar(CENTER, turn + 90.0, short), polar(CENTER, turn + 90.0, 38.0), width);
-    let pencil = Paper { specks: 0.0, ..Paper::PENCIL };
-    let result = trace(&scan_of(pencil.scan(&scan(&sheet(96, 96, vec![bar, stem])).gray, turn as u64)));
+    let result = trace(&on_paper(&sheet(96, 96, vec![bar, stem]), SPECKLESS, turn as u64));
     ensure(result.strokes.len() == 2, || format!("{} strokes", result.strokes.len()))?;
     let normal = Vec2::from_angle(f64::to_radians(turn + 90.0));
     let heights = |s: &Stroke| [s.centreline.start(), s.centreline.end()].map(|p| (p - CENTER).dot(normal));

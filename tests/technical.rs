@@ -7,9 +7,8 @@
 mod common;
 
 use common::compare::{apart, bow, lines, straight_pieces};
-use common::draw::{circle, line, polar, polyline, scan, scan_of, sheet};
+use common::draw::{SPECKLESS, circle, line, on_paper, polar, polyline, sheet};
 use common::figures::{figures, figures_on, like_stroke, nearest, nearest_end, same_length, same_strokes, straight};
-use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
 use kurbo::{BezPath, Line, ParamCurve, Point, Shape, Vec2};
@@ -26,8 +25,7 @@ fn page(strokes: Vec<Stroke>) -> Drawing {
 
 /// A pencil's scan of a drawing; `seed` makes each its own.
 fn pencil(drawing: &Drawing, seed: f64) -> fieldtrace::load::Scan {
-    let paper = Paper { specks: 0.0, ..Paper::PENCIL };
-    scan_of(paper.scan(&scan(drawing).gray, seed.to_bits() >> 32))
+    on_paper(drawing, SPECKLESS, seed.to_bits() >> 32)
 }
 
 /// A frame turned about a point.

@@ -85,7 +85,7 @@ impl<'a> Filter<'a> {
                 plane.add([u as f32 - x as f32, v as f32 - y as f32], [a, b], weight);
             }
         }
-        plane.here().map_or((c0, c2), |[c0, c2]| (c0, c2))
+        plane.here().unwrap_or((c0, c2))
     }
 }
 
@@ -118,7 +118,7 @@ impl Plane {
     }
 
     /// The plane's coefficients where offsets are 0; `None` without a neighbour.
-    fn here(&self) -> Option<[Complex32; 2]> {
+    fn here(&self) -> Option<(Complex32, Complex32)> {
         if self.weight <= 0.0 {
             return None;
         }
@@ -132,7 +132,7 @@ impl Plane {
             let (tx, ty) = (tx - mean * x, ty - mean * y);
             mean - ((tx * yy - ty * xy) * x + (ty * xx - tx * xy) * y) / det
         };
-        Some([height(0), height(1)])
+        Some((height(0), height(1)))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::drawing::Segment;
 use kurbo::{CubicBez, Line, ParamCurveNearest, Point, Vec2};
 
 /// Pieces that meet at a larger angle than this (18 degrees) make a corner.
-const CORNER: f64 = 0.31;
+pub(super) const CORNER: f64 = 0.31;
 /// A line this near to an axis (1.2 degrees) is put on it where that moves no point by more than the tolerance.
 const AXIS: f64 = 0.021;
 /// An arc's tangents may miss its neighbours' by this much (1.5 degrees) and still be called smooth.

@@ -5,9 +5,10 @@
 //! what, needs the same point.
 
 use super::Tolerance;
+use super::joints::CORNER;
 use super::stroke::{set_end, set_start};
 use crate::drawing::{Centreline, Segment, Stroke};
-use kurbo::{BezPath, ParamCurveNearest, Point, Shape, Vec2};
+use kurbo::{BezPath, ParamCurve, ParamCurveNearest, Point, Shape, Vec2};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
@@ -16,8 +17,6 @@ const REACH: f64 = 0.2;
 const BESIDE: f64 = 0.15;
 /// A corner on a line goes so many pixels through it: rounded, it still meets the line.
 const HAIR: f64 = 0.02;
-/// The sine of the least turn at a joint that is a corner (18 degrees).
-const CORNER: f64 = 0.31;
 
 /// A corner of a stroke: the joint before one of its segments.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +34,7 @@ struct Vertex {
 pub(super) fn meet(strokes: &mut [Stroke], tolerance: Tolerance) {
     let reach = REACH * tolerance.width;
     let vertices: Vec<Vertex> = strokes.iter().enumerate().flat_map(|(i, s)| corners(i, &s.centreline)).collect();
-    if vertices.is_empty() {
+    if vertices.iter().all(|v| v.firm) {
         return;
     }
     let places = vertices.iter().enumerate().map(|(i, v)| GeomWithData::new([v.point.x, v.point.y], i));
@@ -67,7 +66,7 @@ fn corners(stroke: usize, centreline: &Centreline) -> Vec<Vertex> {
         let (before, after) = (&segments[(joint + segments.len() - 1) % segments.len()], &segments[joint]);
         let (a, b) = (direction(before, 1.0), direction(after, 0.0));
         let point = after.start();
-        let turns = a.cross(b).abs() > CORNER || a.dot(b) < 0.0;
+        let turns = a.cross(b).abs() > CORNER.sin() || a.dot(b) < 0.0;
         turns.then(|| Vertex {
             stroke,
             joint,
@@ -122,7 +121,7 @@ impl Lines {
         let found = of_others.filter_map(|(stroke, k)| {
             let segment = self.paths[stroke].get_seg(k)?;
             let nearest = segment.nearest(v.point, 1e-6);
-            Some((nearest.distance_sq, stroke, k, kurbo::ParamCurve::eval(&segment, nearest.t)))
+            Some((nearest.distance_sq, stroke, k, segment.eval(nearest.t)))
         });
         let nearest = found.min_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))))?;
         (nearest.0 <= reach * reach).then_some(nearest.3)

@@ -315,9 +315,11 @@ impl Finder<'_> {
         let reach = if end.stop == Stop::Merged { 0.75 } else { 0.9 } * self.image.line_width.max(1.5);
         let from = end.point;
         for (place, foot, distance) in self.index.near(from, reach) {
+            if self.is_own_neighbourhood(end, place) {
+                continue;
+            }
             // What a walk merged with is one with its ink, even if a light spot lies between.
-            let inked = end.stop == Stop::Merged || self.image.is_inked(from, foot, end.core);
-            if self.is_own_neighbourhood(end, place) || !inked {
+            if end.stop != Stop::Merged && !self.image.is_inked(from, foot, end.core) {
                 continue;
             }
             let touch = match self.end_near(place, 0.8 * self.image.line_width) {

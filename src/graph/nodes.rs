@@ -115,6 +115,11 @@ impl Solver<'_> {
         self.ends[id].as_ref().expect("numbers of existing ends only")
     }
 
+    /// An end's line as it passes a point, straight.
+    fn arm(&self, end: &End, at: Point) -> (Point, Vec2) {
+        arm_line(&end.tail, at, self.image.line_width)
+    }
+
     fn nodes(&self, groups: &mut UnionFind<usize>) -> Vec<Node> {
         let mut members: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
         for end in self.ends.iter().flatten() {
@@ -180,8 +185,7 @@ impl Solver<'_> {
             contacts.iter().map(|c| c.point).collect()
         };
         let centre = mean(&observed);
-        let mut arms: Vec<(Point, Vec2)> =
-            ends.iter().map(|&e| arm_line(&self.end(e).tail, centre, self.image.line_width)).collect();
+        let mut arms: Vec<(Point, Vec2)> = ends.iter().map(|&e| self.arm(self.end(e), centre)).collect();
         for &body in bodies {
             arms.push((point_at(&self.lines[body.line], body.at), direction(self.lines, body)));
         }
@@ -258,7 +262,7 @@ impl Solver<'_> {
         let (x, y) = (self.end(*x), self.end(*y));
         let middle = a.position.midpoint(b.position);
         let along = |end: &End, body: &Place| {
-            let sine = arm_line(&end.tail, middle, self.image.line_width).1.cross(direction(self.lines, *body));
+            let sine = self.arm(end, middle).1.cross(direction(self.lines, *body));
             sine.abs() < TANGENTIAL.sin()
         };
         along(x, p)
@@ -305,7 +309,7 @@ impl Solver<'_> {
 
     /// Whether two ends stand on the only line through a node as a V does: on one side of it, each as steep as the other.
     fn stands(&self, node: &Node, pairs: &[Pair], [a, b]: [usize; 2]) -> bool {
-        let arm = |end: usize| arm_line(&self.end(end).tail, node.position, self.image.line_width).1;
+        let arm = |end: usize| self.arm(self.end(end), node.position).1;
         let along = match (node.ends.len(), &node.bodies[..], pairs) {
             (2, [body], []) => direction(self.lines, *body),
             (4, [], [line]) if line.turn < STRAIGHT => arm(line.ends[0]),

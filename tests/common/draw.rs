@@ -1,5 +1,6 @@
 //! Known drawings and their rasters.
 
+use super::paper::Paper;
 use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
 use fieldtrace::load::Scan;
 use fieldtrace::options::Options;
@@ -165,6 +166,14 @@ fn skia_path(path: &BezPath) -> tiny_skia::Path {
 /// A grey scan without a resolution.
 pub fn scan_of(gray: Raster<f32>) -> Scan {
     Scan { gray, rgb: None, dpi: None }
+}
+
+/// Pencil on paper without specks.
+pub const SPECKLESS: Paper = Paper { specks: 0.0, ..Paper::PENCIL };
+
+/// A drawing by a round pen as a scan of some paper; `seed` makes each its own.
+pub fn on_paper(drawing: &Drawing, paper: Paper, seed: u64) -> Scan {
+    scan_of(paper.scan(&scan(drawing).gray, seed))
 }
 
 /// A drawing as a scan, dashes and all.
