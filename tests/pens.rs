@@ -99,7 +99,7 @@ fn two_pens() -> Vec<(f64, f64)> {
 fn lines_of_two_widths_side_by_side_keep_theirs() {
     figures(
         "two pens side by side",
-        0.214,
+        0.261,
         &pairs(&two_pens(), &[0.0, 30.0]),
         |&((wide, thin), turn)| {
             let bar = |side: f64, width: f64| {

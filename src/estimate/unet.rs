@@ -33,7 +33,11 @@ const MARGIN: usize = 2;
 /// network's field: [`PolyVectorField::smoothed`].
 const SMOOTHING: f64 = 2.25;
 
-/// The field from the U-Net: Taktasheva et al. 2019.
+/// Standard deviation of the distance of coefficients in it: noise makes like coefficients differ more.
+const ALIKE: f32 = 0.2;
+const CLEAN_ALIKE: f32 = 0.14;
+
+/// The field from the U-Net, Taktasheva et al. 2019: the mean of what the network sees in the drawing and in its mirror image.
 #[derive(Debug)]
 pub struct UNet {
     config: UNetConfig,
@@ -42,11 +46,11 @@ pub struct UNet {
 
 #[derive(Debug)]
 enum Runner {
-    /// The crate's own inference on the CPU, only where there is ink.
-    Engine(Box<Engine>),
-    /// The tensor library on some device, tile by tile.
+    /// The crate's own inference on the CPU, only where there is ink: the network and its mirror image.
+    Engine(Box<[Engine; 2]>),
+    /// The same by the tensor library on some device, tile by tile.
     #[cfg(feature = "train")]
-    Library(Box<Within>, Device),
+    Library(Box<[Within; 2]>, Device),
 }
 
 impl UNet {
@@ -65,10 +69,11 @@ impl UNet {
     pub fn new(weights: &Weights, backend: Backend) -> Result<Self> {
         let config = weights.config();
         let runner = match backend {
-            Backend::Engine => Runner::Engine(Box::new(Engine::new(weights)?)),
+            Backend::Engine => Runner::Engine(Box::new([Engine::new(weights)?, Engine::new(&weights.mirrored()?)?])),
             #[cfg(feature = "train")]
             Backend::Library(device) => {
-                Runner::Library(Box::new(Within::new(weights.model(&device)?, &config, &device)), device)
+                let within = |weights: &Weights| Ok(Within::new(weights.model(&device)?, &config, &device));
+                Runner::Library(Box::new([within(weights)?, within(&weights.mirrored()?)?]), device)
             }
         };
         Ok(Self { config, runner })
@@ -91,28 +96,29 @@ impl FieldEstimator for UNet {
         let tiles: Vec<(usize, usize)> = grid.tiles().collect();
         let tile = |at| Tile::new(&grid, at, &image.mask).filter(|_| cancel.check().is_ok());
         let parts: Vec<Vec<Pixel>> = match &self.runner {
-            Runner::Engine(engine) => {
+            Runner::Engine(engines) => {
                 let spare = Mutex::new(Vec::<Room>::new());
                 let run = |&at: &(usize, usize)| {
                     let Some(tile) = tile(at) else { return Vec::new() };
                     let mut room = lock(&spare).pop().unwrap_or_default();
-                    let pixels = tile.by_engine(engine, &mut room, &ink, self.config);
+                    let pixels = tile.by_engine(engines, &mut room, &ink, self.config);
                     lock(&spare).push(room);
                     pixels
                 };
                 tiles.par_iter().map(run).collect()
             }
             #[cfg(feature = "train")]
-            Runner::Library(network, device) => {
+            Runner::Library(networks, device) => {
                 let run = |&at: &(usize, usize)| {
-                    tile(at).map_or_else(Vec::new, |t| t.by_library(network, device, &ink, self.config))
+                    tile(at).map_or_else(Vec::new, |t| t.by_library(networks, device, &ink, self.config))
                 };
                 tiles.iter().map(run).collect()
             }
         };
         cancel.check()?;
         let field = PolyVectorField::from_parts(width, height, parts);
-        Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(2.0, 10.0)))
+        let alike = if image.noise > 0.0 { ALIKE } else { CLEAN_ALIKE };
+        Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(2.0, 10.0), alike))
     }
 }
 
@@ -125,6 +131,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 struct Room {
     features: Extractor,
     scratch: Scratch,
+    /// What the first of two networks gives.
+    values: Vec<[f32; 4]>,
 }
 
 /// How the part of an image that has ink is cut into tiles of one size. Tiles begin where the ink does, so that a drawing
@@ -230,30 +238,36 @@ impl<'a> Tile<'a> {
         Pixel { index, c0, c2, confidence }
     }
 
-    fn by_engine(&self, engine: &Engine, room: &mut Room, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
+    fn by_engine(&self, engines: &[Engine; 2], room: &mut Room, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
         let mut wanted = vec![Vec::new(); self.size.1];
         self.cells.runs(self.grid.multiple, |x, y, n| wanted[y].push(x..x + n));
-        let Room { features, scratch } = room;
+        let Room { features, scratch, values } = room;
         features.extract(&self.cut(ink), config.input, &wanted);
-        let mut pixels = Vec::new();
-        engine.run(scratch, &features.channels, &self.cells, |x, y, values| {
+        let input = &features.channels;
+        values.clear();
+        engines[0].run(scratch, input, &self.cells, |_, _, first| values.push(first));
+        let (mut pixels, mut first) = (Vec::new(), values.iter());
+        engines[1].run(scratch, input, &self.cells, |x, y, second| {
+            let first = first.next().expect("the same pixels in the same order");
             if let Some(index) = self.number(x, y) {
                 let base = features.base(y * self.size.0 + x).unwrap_or_default();
-                pixels.push(self.pixel(index, values, base));
+                let mean = std::array::from_fn(|k| 0.5 * (first[k] + second[k]));
+                pixels.push(self.pixel(index, mean, base));
             }
         });
         pixels
     }
 
     #[cfg(feature = "train")]
-    fn by_library(&self, network: &Within, device: &Device, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
+    fn by_library(&self, networks: &[Within; 2], device: &Device, ink: &Shown, config: UNetConfig) -> Vec<Pixel> {
         let Features { channels, base } = features(&self.cut(ink), config.input);
         let (width, height) = self.size;
         let n = width * height;
         let data = TensorData::new(channels, [1, config.input.channels(), height, width]);
         let active = TensorData::new(self.cells.shares(), [1, 1, self.cells.rows, self.cells.columns]);
-        let output = network.forward(Tensor::from_data(data, device), &Tensor::from_data(active, device)).into_data();
-        let output = output.try_into_vec::<f32>().expect("the network computes in f32");
+        let (input, active) = (Tensor::from_data(data, device), Tensor::from_data(active, device));
+        let sum = networks[0].forward(input.clone(), &active) + networks[1].forward(input, &active);
+        let output = sum.mul_scalar(0.5).into_data().try_into_vec::<f32>().expect("the network computes in f32");
         let of_pixel = |i: usize| {
             let base = if base.is_empty() { [0.0; 4] } else { [0, 1, 2, 3].map(|k| base[k * n + i]) };
             let index = self.number(i % width, i / width)?;

@@ -11,11 +11,9 @@ use num_complex::Complex32;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Distance of coefficients, `sqrt(|c0 - c0'|^2 + |c2 - c2'|^2)`, that is one standard deviation of the filter.
-const ALIKE: f32 = 0.2;
-/// Entries of the table of weights by squared distance of coefficients, and the squared distance at its end.
+/// Entries of the table of weights by squared distance of coefficients, and the distance at its end, in standard deviations.
 const STEPS: usize = 256;
-const UNLIKE: f32 = 9.0 * ALIKE * ALIKE;
+const UNLIKE: f32 = 3.0;
 /// Added to the variance of the neighbours' places along each axis, in square pixels, before slopes are taken: across a
 /// thin line they lie too near one another to tell one.
 const LEVEL: f32 = 0.5;
@@ -23,13 +21,14 @@ const LEVEL: f32 = 0.5;
 const REACH: f64 = 1.5;
 
 impl PolyVectorField {
-    /// The field fitted to like coefficients on the mask nearby; `sigma` is the standard deviation in pixels.
+    /// The field fitted to like coefficients on the mask nearby; `sigma` is the standard deviation in pixels, `alike` that of
+    /// the distance of coefficients, `sqrt(|c0 - c0'|^2 + |c2 - c2'|^2)`.
     ///
     /// What lies off the mask stays as it is.
     #[must_use]
-    pub fn smoothed(mut self, mask: &Mask, sigma: f64) -> Self {
+    pub fn smoothed(mut self, mask: &Mask, sigma: f64, alike: f32) -> Self {
         let width = mask.width();
-        let filter = Filter::new(&self, mask, sigma);
+        let filter = Filter::new(&self, mask, sigma, alike);
         let rows: Vec<Vec<(Complex32, Complex32)>> =
             (0..mask.height()).into_par_iter().map(|y| filter.row(y)).collect();
         for (y, row) in rows.iter().enumerate() {
@@ -49,18 +48,20 @@ struct Filter<'a> {
     runs: Vec<Vec<Range<usize>>>,
     /// Weights by distance in pixels along an axis.
     near: Vec<f32>,
-    /// Weights by squared distance of coefficients.
+    /// Weights by squared distance of coefficients, and entries of this table per unit of it.
     alike: Vec<f32>,
+    scale: f32,
 }
 
 impl<'a> Filter<'a> {
-    fn new(field: &'a PolyVectorField, mask: &Mask, sigma: f64) -> Self {
+    fn new(field: &'a PolyVectorField, mask: &Mask, sigma: f64, alike: f32) -> Self {
         let radius = (REACH * sigma).ceil() as usize;
         let near = (0..=radius).map(|d| (-0.5 * (d as f64 / sigma).powi(2)).exp() as f32).collect();
-        let weight = |i: usize| (-0.5 * (i as f32 + 0.5) / STEPS as f32 * UNLIKE / (ALIKE * ALIKE)).exp();
-        let alike = (0..STEPS).map(weight).collect();
+        let weight = |i: usize| (-0.5 * (i as f32 + 0.5) / STEPS as f32 * UNLIKE * UNLIKE).exp();
+        let weights = (0..STEPS).map(weight).collect();
+        let scale = STEPS as f32 / (UNLIKE * alike).powi(2);
         let runs = (0..mask.height()).into_par_iter().map(|y| runs(mask.row(y)).collect()).collect();
-        Self { field, runs, near, alike }
+        Self { field, runs, near, alike: weights, scale }
     }
 
     /// What fits at the mask's pixels of a row.
@@ -79,7 +80,7 @@ impl<'a> Filter<'a> {
             let inside = self.runs[v][first..].iter().take_while(|run| run.start < right);
             for u in inside.flat_map(|run| run.start.max(left)..run.end.min(right)) {
                 let (a, b) = (self.field.c0[(u, v)], self.field.c2[(u, v)]);
-                let step = ((a - c0).norm_sqr() + (b - c2).norm_sqr()) * (STEPS as f32 / UNLIKE);
+                let step = ((a - c0).norm_sqr() + (b - c2).norm_sqr()) * self.scale;
                 let Some(like) = self.alike.get(step as usize) else { continue };
                 let weight = like * across * self.near[u.abs_diff(x)];
                 plane.add([u as f32 - x as f32, v as f32 - y as f32], [a, b], weight);
@@ -163,7 +164,7 @@ mod tests {
         let mask = Raster::filled(40, 40, true);
         for step in 0..16 {
             let angle = 0.2 * f64::from(step);
-            let field = noisy(40, |_, _| angle).smoothed(&mask, 4.0);
+            let field = noisy(40, |_, _| angle).smoothed(&mask, 4.0, 0.2);
             assert!(error(&field, 20, 20, angle) < 0.012, "{angle}");
         }
     }
@@ -171,7 +172,7 @@ mod tests {
     #[test]
     fn slow_turns_stay_where_they_are() {
         let turn = |x: usize, y: usize| 0.01 * (x as f64 - 20.0) + 0.004 * (y as f64 - 20.0);
-        let field = noisy(40, turn).smoothed(&Raster::filled(40, 40, true), 4.0);
+        let field = noisy(40, turn).smoothed(&Raster::filled(40, 40, true), 4.0, 0.2);
         assert!(error(&field, 20, 20, 0.0) < 0.012);
     }
 
@@ -180,7 +181,7 @@ mod tests {
         let mask = Raster::from_fn(40, 40, |_, y| y.abs_diff(20) <= 1);
         for bend in [0.005, 0.01, 0.02] {
             let turn = |x: usize| bend * x as f64;
-            let field = noisy(40, |x, _| turn(x)).smoothed(&mask, 4.0);
+            let field = noisy(40, |x, _| turn(x)).smoothed(&mask, 4.0, 0.2);
             for x in [0, 1, 38, 39] {
                 let off = error(&field, x, 20, turn(x));
                 assert!(off < 0.018, "{off} at {x}, {bend} a pixel");
@@ -193,13 +194,13 @@ mod tests {
         let half = |x: usize| if x < 20 { 0.1 } else { 0.8 };
         let field = noisy(40, |x, _| half(x));
         let mask = Raster::from_fn(40, 40, |_, y| y < 30);
-        let smooth = field.clone().smoothed(&mask, 4.0);
+        let smooth = field.clone().smoothed(&mask, 4.0, 0.2);
         for x in [17, 19, 20, 22] {
             assert!(error(&smooth, x, 15, half(x)) < 0.018, "{x}");
         }
         assert_eq!(smooth.c0()[(5, 35)], field.c0()[(5, 35)]);
         let (c0, _) = encode(Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0));
         let even = PolyVectorField::from_directions(9, 9, |_, _| Some((Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0))));
-        assert!((even.smoothed(&Raster::filled(9, 9, true), 3.0).c0()[(4, 4)] - c0).norm() < 1e-5);
+        assert!((even.smoothed(&Raster::filled(9, 9, true), 3.0, 0.2).c0()[(4, 4)] - c0).norm() < 1e-5);
     }
 }

@@ -282,14 +282,17 @@ impl Finder<'_> {
     /// Whether an end stops at the line that it crosses `beyond` pixels before its last point.
     fn judge(&self, end: &End, place: Place, point: Point, heading: Vec2, beyond: f64) -> Option<Contact> {
         let along = direction(self.lines, place);
-        let sine = (heading.normalize().cross(along)).abs().max(0.5);
+        let sine = heading.normalize().cross(along).abs();
+        // The smaller the angle, the longer are the inks one; at less than 25 degrees lines merge.
+        let shared = 0.5 * end.width / sine.max(0.42);
+        let sine = sine.max(0.5);
         let other_width = width_at(self.lines, place, self.image.line_width);
         let edge = 0.5 * other_width / sine;
         let slack = PROTRUSION * self.image.line_width.max(2.0);
         if beyond > edge + slack && end.stop != Stop::Merged {
             return None;
         }
-        let touch = match self.end_near(place, 0.5 * end.width / sine + slack) {
+        let touch = match self.end_near(place, shared + slack) {
             Some(other) if other != end_id(end.line, end.side) => Touch::End(other),
             _ => Touch::Body(place),
         };

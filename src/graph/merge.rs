@@ -21,8 +21,10 @@ const ALONG: f64 = 0.64;
 const ARRIVING: f64 = 0.82;
 /// A line that comes in at an angle meets the body this many line widths from its ends.
 const CLEAR: f64 = 2.0;
-/// The edge is measured from this many line widths before the end's last point on the body, to that many after it.
-const BEFORE: f64 = 6.0;
+/// The edge is measured from this many line widths before the end's last point on the body, or from where it has come down
+/// no further for so many, to that many after it.
+const BEFORE: f64 = 12.0;
+const DOWN: f64 = 4.0;
 const AFTER: f64 = 8.0;
 /// The lines are compared up to a distance of this many line widths.
 const APART: f64 = 1.2;
@@ -35,6 +37,8 @@ const STEEPEST: f64 = 0.5;
 /// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
 const MISFIT: f64 = 0.1;
 const MISFIT_PIXELS: f64 = 0.15;
+/// An edge comes down by at least this share of the line's width.
+const LOWER: f64 = 0.04;
 /// An edge that turns back by this share of the line's width is another's.
 const JUMP: f64 = 0.3;
 /// The fewest places at which the edge must bulge.
@@ -128,7 +132,7 @@ impl Leave {
 
 fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Course> {
     let lw = image.line_width;
-    let body = body(lines, index, end, NEAR * lw)?;
+    let body = *bodies(lines, index, end, NEAR * lw).first()?;
     let arriving = arm_line(&end.tail, point_at(&lines[body.line], body.at), lw).1;
     if arriving.dot(direction(lines, body)).abs() < ARRIVING {
         return None;
@@ -166,14 +170,17 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
     Some(Course { points, replaced: alone })
 }
 
-/// The nearest line that an end runs along.
-fn body(lines: &[Streamline], index: &LineIndex, end: &End, radius: f64) -> Option<Place> {
-    let near = index.near(end.point, radius).into_iter().map(|(place, ..)| place);
-    let along = |place: &Place| {
+/// The lines that an end runs along, the nearest first, each where it is nearest.
+pub(super) fn bodies(lines: &[Streamline], index: &LineIndex, end: &End, radius: f64) -> Vec<Place> {
+    let mut bodies: Vec<Place> = Vec::new();
+    for (place, ..) in index.near(end.point, radius) {
         let direction = direction_at(&lines[place.line], place.at as usize);
-        direction.dot(end.tail.heading).abs() > ALONG
-    };
-    near.filter(|place| place.line != end.line).find(along)
+        let is_along = direction.dot(end.tail.heading).abs() > ALONG;
+        if is_along && place.line != end.line && bodies.iter().all(|body| body.line != place.line) {
+            bodies.push(place);
+        }
+    }
+    bodies
 }
 
 /// The body as an axis: `s` grows the way the line leaves it, `y` to the line's side.
@@ -256,10 +263,12 @@ impl<'a> Frame<'a> {
             Some(Sample { s, y: edge - 0.5 * own, half: 0.5 * own })
         };
         let count = self.range.map(|pixels| (pixels / STEP) as i64);
-        let mut lowest = f64::MAX;
+        let (mut lowest, mut down) = (f64::MAX, 0.0);
         let before = (0..=count[0]).map_while(|i| at(-i)).take_while(|sample| {
-            lowest = lowest.min(sample.y);
-            sample.y < lowest + JUMP * own
+            if sample.y < lowest - LOWER * own {
+                (lowest, down) = (sample.y, sample.s);
+            }
+            sample.y < lowest + JUMP * own && down - sample.s <= DOWN * own
         });
         let mut samples: Vec<Sample> = before.collect();
         samples.reverse();

@@ -9,7 +9,9 @@ mod approach;
 mod assemble;
 mod confidence;
 mod contacts;
+mod course;
 mod ends;
+mod forks;
 mod gaps;
 mod merge;
 mod nodes;
@@ -18,6 +20,7 @@ mod rejoin;
 mod settle;
 mod swaps;
 mod taper;
+mod touches;
 mod trim;
 
 use crate::cancel::Cancel;
@@ -232,6 +235,8 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, c
     if image.noise > 0.0 {
         settle::settle(image, &mut lines);
     }
+    touches::part(image, &mut lines);
+    forks::straighten(image, &mut lines);
     merge::merge(image, &mut lines);
     let swaps = swaps::cuts(image, &lines);
     if !swaps.is_empty() {

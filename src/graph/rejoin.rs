@@ -6,16 +6,16 @@
 //! their vertex, and a walk ran by from one to the other.
 
 use super::contacts::Place;
+use super::course::{course, run};
 use super::ends::End;
 use super::nodes::{Node, continuation, two_corners};
 use crate::clean::LineImage;
-use crate::streamline::{STEP, Stop, Streamline, Tail};
-use kurbo::Point;
+use crate::streamline::{Stop, Streamline};
 
 /// What the stem must gain over the body's own continuation, radians.
 const MARGIN: f64 = 0.1;
 /// An arm that turns by more than this (35 degrees) does not continue another.
-pub(super) const LARGEST_TURN: f64 = 0.61;
+const LARGEST_TURN: f64 = 0.61;
 /// Course of a body beside a node: from this many line widths away, over that many.
 const AWAY: f64 = 2.0;
 const OVER: f64 = 5.0;
@@ -27,7 +27,9 @@ pub(super) fn cuts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]
 
 fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Node) -> Option<Place> {
     let [body] = node.bodies[..] else { return None };
-    let sides = [-1, 1].map(|step| course(image, &lines[body.line], body, step, AWAY));
+    let (line, at) = (&lines[body.line], body.at.round() as i64);
+    let [away, over] = [AWAY, OVER].map(|widths| widths * image.line_width);
+    let sides = [-1, 1].map(|step| course(line, &run(line, at, step, away, over)));
     let [Some(back), Some(ahead)] = sides else { return None };
     let stems: Vec<&End> = node.ends.iter().filter_map(|&e| ends[e].as_ref()).collect();
     if let [a, b] = stems[..]
@@ -41,20 +43,6 @@ fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Nod
         .flat_map(|stem| [back, ahead].map(|side| continuation(&stem.tail, &side, node.position, image.line_width)))
         .min_by(f64::total_cmp)?;
     (best + MARGIN < through && best < LARGEST_TURN).then_some(body)
-}
-
-/// The course of a line towards a place, from one side, as it is `away` line widths from there.
-pub(super) fn course(image: &LineImage, line: &Streamline, place: Place, step: i64, away: f64) -> Option<Tail> {
-    let n = line.points.len() as i64;
-    let count = |widths: f64| (widths * image.line_width / STEP) as i64;
-    let at = |k: i64| -> Option<Point> {
-        let index = place.at.round() as i64 + step * k;
-        let index = if line.closed { index.rem_euclid(n) } else { index };
-        line.points.get(usize::try_from(index).ok()?).copied()
-    };
-    let run: Vec<Point> = (count(away)..count(away + OVER)).map_while(at).collect();
-    let oldest_first: Vec<Point> = run.into_iter().rev().collect();
-    (oldest_first.len() > 5).then(|| Tail::fit(&oldest_first, 0.1)).flatten()
 }
 
 /// The lines with the given places cut; every part keeps the line's own stops at its outer ends.

@@ -4,9 +4,9 @@
 //! arm. The four arms, as they run outside the shared ink, are compared: when another pairing turns less than the
 //! walks did, both lines are cut in the middle of it, and their parts are paired anew.
 
-use super::contacts::{LineIndex, Place, point_at};
-use super::nodes::continuation;
-use super::rejoin::{LARGEST_TURN, course};
+use super::contacts::{LineIndex, Place};
+use super::course::{course, departure, run};
+use super::touches::{LARGEST, MARGIN};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Streamline};
 use rayon::prelude::*;
@@ -17,11 +17,9 @@ const TOUCH: f64 = 0.6;
 const LONGEST: f64 = 8.0;
 /// Parts of one line are different lines when they are this many line widths apart along it.
 const OWN: f64 = 6.0;
-/// Arms begin this many line widths outside the shared ink.
+/// Arms begin this many line widths outside the shared ink; their course is that of so many.
 const AWAY: f64 = 0.75;
-/// What another pairing must gain, radians.
-const MARGIN: f64 = 0.2;
-
+const OVER: f64 = 5.0;
 /// A stretch of shared ink: first and last place on each of two lines.
 #[derive(Clone, Copy, Debug)]
 struct Shared {
@@ -70,16 +68,18 @@ fn cut(image: &LineImage, lines: &[Streamline], shared: Shared) -> Option<[Place
     if (shared.a[1].at - shared.a[0].at) * STEP > LONGEST * image.line_width {
         return None;
     }
-    let arm = |place: Place, step: i64| course(image, &lines[place.line], place, step, AWAY);
+    let [away, over] = [AWAY, OVER].map(|widths| widths * image.line_width);
+    let arm = |place: Place, step: i64| {
+        let line = &lines[place.line];
+        course(line, &run(line, place.at.round() as i64, step, away, over))
+    };
     let [a0, a1] = [arm(shared.a[0], -1)?, arm(shared.a[1], 1)?];
     let forwards = shared.b[1].at >= shared.b[0].at;
     let [b0, b1] = [arm(shared.b[0], if forwards { -1 } else { 1 })?, arm(shared.b[1], if forwards { 1 } else { -1 })?];
     let middle = |[from, to]: [Place; 2]| Place { line: from.line, at: 0.5 * (from.at + to.at) };
     let places = [middle(shared.a), middle(shared.b)];
-    let [p, q] = places.map(|place| point_at(&lines[place.line], place.at));
-    let turn = |x, y| continuation(x, y, p.midpoint(q), image.line_width);
-    let walked = turn(&a0, &a1) + turn(&b0, &b1);
-    let others = [[turn(&a0, &b0), turn(&a1, &b1)], [turn(&a0, &b1), turn(&a1, &b0)]];
-    let better = |pair: &[f64; 2]| pair.iter().all(|t| *t < LARGEST_TURN) && pair[0] + pair[1] + MARGIN < walked;
+    let walked = departure(&a0, &a1) + departure(&b0, &b1);
+    let others = [[departure(&a0, &b0), departure(&a1, &b1)], [departure(&a0, &b1), departure(&a1, &b0)]];
+    let better = |pair: &[f64; 2]| pair.iter().all(|t| *t < LARGEST) && pair[0] + pair[1] + MARGIN < walked;
     others.iter().any(better).then_some(places)
 }

@@ -20,7 +20,7 @@ use std::thread;
 const DOUBLE: f32 = 0.1;
 
 /// How much both directions count where two curves share a pixel.
-const SHARED: f32 = 4.0;
+const SHARED: f32 = 6.0;
 
 /// How much the second direction counts where nothing shows it.
 const UNSEEN: f32 = 0.2;

@@ -6,6 +6,7 @@
 //! (`c0`, the fourth moments) stays as it is with each quarter turn and becomes `conj`.
 
 use super::data::Sample;
+use crate::unet::{SWAPPED, signs};
 use rand::Rng;
 
 /// One of the eight.
@@ -36,9 +37,9 @@ impl Turn {
 
     /// What the real and the imaginary part of squared directions and of their fourth powers are multiplied by.
     fn signs(self) -> [f32; 4] {
-        let mirror = if self.swapped { -1.0 } else { 1.0 };
+        let [re2, im2, re4, im4] = if self.swapped { SWAPPED } else { [1.0; 4] };
         let turn = if self.quarters % 2 == 1 { -1.0 } else { 1.0 };
-        [turn * mirror, turn, 1.0, mirror]
+        [turn * re2, turn * im2, re4, im4]
     }
 }
 
@@ -46,10 +47,8 @@ impl Sample {
     /// A sample of a square of `side` pixels, laid down otherwise.
     #[must_use]
     pub fn turned(&self, turn: Turn, side: usize) -> Self {
-        let [re2, im2, re4, im4] = turn.signs();
-        let field = [re4, im4, re2, im2];
-        // The input is the ink and then second and fourth moments, as far as the network is shown them.
-        let input = [1.0, re2, im2, re4, im4, re2, im2, re4, im4];
+        let [re2, im2, ..] = turn.signs();
+        let (input, field) = signs(turn.signs());
         let signs: [&[f32]; 5] = [&input, &field, &field, &[re2, im2, re2, im2], &[1.0; 3]];
         let place = |i: usize| {
             let (x, y) = turn.moved((i % side, i / side), side);

@@ -29,6 +29,12 @@ impl Input {
     }
 }
 
+/// What each channel of the input and of the field is multiplied by in a drawing that is laid down otherwise, from what the
+/// real and imaginary parts of squared directions, and of their fourth powers, are.
+pub(crate) fn signs([re2, im2, re4, im4]: [f32; 4]) -> ([f32; 9], [f32; 4]) {
+    ([1.0, re2, im2, re4, im4, re2, im2, re4, im4], [re4, im4, re2, im2])
+}
+
 /// Windows of the moments: standard deviations in pixels, and how many of them a window reaches.
 const SCALES: [f64; 2] = [1.8, 4.0];
 const REACH: f64 = 3.0;

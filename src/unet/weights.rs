@@ -66,6 +66,11 @@ impl Weights {
         Ok(Numbers { weights: self, tensors })
     }
 
+    /// Other numbers for a network of this shape.
+    pub(super) fn with_bytes(&self, bytes: Cow<'static, [u8]>) -> Self {
+        Self { bytes, ..self.clone() }
+    }
+
     #[cfg(feature = "train")]
     pub(super) fn bytes(&self) -> Vec<u8> {
         self.bytes.to_vec()
@@ -80,7 +85,7 @@ impl Weights {
 /// The tensors of a file by name.
 pub(super) struct Numbers<'a> {
     weights: &'a Weights,
-    tensors: SafeTensors<'a>,
+    pub tensors: SafeTensors<'a>,
 }
 
 impl Numbers<'_> {
