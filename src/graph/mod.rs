@@ -227,16 +227,16 @@ pub(crate) struct TrailPoint {
 pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, cancel: &Cancel) -> Result<StrokeGraph> {
     let (mut dots, mut lines) = ends::split_dots(image, streamlines);
     trim::trim(image, &mut lines);
-    let pens = pens::Pens::of(image, &lines, &dots);
-    if let Some(pens) = &pens {
-        lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
-        dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
-    }
     if image.noise > 0.0 {
         settle::settle(image, &mut lines);
     }
     touches::part(image, &mut lines);
     forks::straighten(image, &mut lines);
+    let pens = pens::Pens::of(image, &lines, &dots);
+    if let Some(pens) = &pens {
+        lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
+        dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
+    }
     merge::merge(image, &mut lines);
     let swaps = swaps::cuts(image, &lines);
     if !swaps.is_empty() {
