@@ -9,7 +9,7 @@ use super::course::{bridge, course, departure, run};
 use super::ends::{End, ends};
 use super::merge::bodies;
 use crate::clean::LineImage;
-use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
+use crate::streamline::{STEP, Stop, Streamline, Tail};
 use rayon::prelude::*;
 
 /// A body is looked for within this many line widths of an end.
@@ -20,8 +20,6 @@ const OVER: f64 = 5.0;
 /// An arm is alone within this many line widths of the end, for that many at least, or there is none.
 const APART: f64 = 8.0;
 const LASTING: f64 = 0.5;
-/// The arms of a fork come in at a smaller angle to each other than this (40 degrees).
-const SPREAD: f64 = 0.7;
 /// Of thinner pens than this, in pixels, the courses are as long as of this one.
 const THIN: f64 = 3.0;
 /// What goes on in the stem turns and bends by less than this (15 degrees), and by so much less than what the body does.
@@ -107,10 +105,7 @@ fn fork(image: &LineImage, lines: &[Streamline], end: &End, body: Place) -> Opti
         course(line, &ahead[alone..ahead.len().min(alone + count)])
     });
     let ends_here = (ahead.len() as f64) * STEP < APART * lw;
-    let bends = |arm: &Tail| {
-        let apart = angle_between(tail.heading, arm.heading).abs();
-        apart < SPREAD && departure(arm, &stem) > turn + MARGIN
-    };
+    let bends = |arm: &Tail| departure(arm, &stem) > turn + MARGIN;
     let is_fork = arm.as_ref().map_or(ends_here, bends);
     let has_arm = arm.is_some();
     is_fork.then_some(Fork { line: end.line, side: end.side, tip: end.tip, tail, body, forward, stem, has_arm, turn })
