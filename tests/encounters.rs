@@ -28,6 +28,12 @@ fn bar(center: Point, angle: f64, reach: f64, width: f64) -> Stroke {
     line(polar(center, angle, -reach), polar(center, angle, reach), width)
 }
 
+/// An arc that leaves a line at an angle in degrees along its tangent, to one side (1) or the other (-1).
+fn leaving(from: Point, angle: f64, radius: f64, side: f64, width: f64) -> Stroke {
+    let center = polar(from, angle + side * 90.0, radius);
+    arc(center, radius, (angle - side * 90.0).to_radians(), side * f64::min(50.0 / radius, 1.3), width)
+}
+
 /// How far a stroke may be off at a junction: the ink of two lines is one there.
 fn slack(width: f64) -> f64 {
     0.25 * width + 0.5
@@ -246,12 +252,8 @@ fn two_arcs_that_leave_a_line_at_one_point_leave_it_whole() {
         &cases,
         |&((radius, width), turn)| {
             let center = polar(CENTER, turn, -10.0);
-            let sweep = f64::min(50.0 / radius, 1.3);
-            let leave = |side: f64| {
-                let round = polar(center, turn + side * 90.0, radius);
-                arc(round, radius, (turn - side * 90.0).to_radians(), side * sweep, width)
-            };
-            page(vec![bar(center, turn, 42.0, width), leave(1.0), leave(-1.0)])
+            let arc = |side| leaving(center, turn, radius, side, width);
+            page(vec![bar(center, turn, 42.0, width), arc(1.0), arc(-1.0)])
         },
         |&((radius, width), _), truth, traced| {
             let parting = (2.0 * radius * width).sqrt();
@@ -329,9 +331,7 @@ fn an_arc_that_leaves_a_line_is_a_branch_of_it() {
         &cases,
         |&((radius, width), turn)| {
             let center = polar(CENTER, turn, -10.0);
-            let sweep = f64::min(50.0 / radius, 1.3);
-            let round = polar(center, turn + 90.0, radius);
-            page(vec![bar(center, turn, 42.0, width), arc(round, radius, (turn - 90.0).to_radians(), sweep, width)])
+            page(vec![bar(center, turn, 42.0, width), leaving(center, turn, radius, 1.0, width)])
         },
         |&((radius, width), _), truth, traced| {
             // Where the two part cannot be seen until there is paper between them.

@@ -3,6 +3,11 @@
 use crate::streamline::{STEP, Streamline, Tail, angle_between};
 use kurbo::{CubicBez, ParamCurve, Point};
 
+/// Of thinner pens than this, in pixels, courses are as long as of this one.
+pub(super) const THIN: f64 = 3.0;
+/// How far from an arc the way from one arm to another may be, and what another pairing of arms must gain: [`departure`].
+pub(super) const LARGEST: f64 = 0.4;
+pub(super) const MARGIN: f64 = 0.2;
 /// Weight of a turn that the arms' curvature does not explain; in narrow bends it is measured too small.
 const BENT: f64 = 0.5;
 

@@ -5,7 +5,7 @@
 //! the one that best continues the stem is joined to it, so that the other is what leaves ([`super::merge`]).
 
 use super::contacts::{LineIndex, Place, direction};
-use super::course::{bridge, course, departure, run};
+use super::course::{THIN, bridge, course, departure, run};
 use super::ends::{End, ends};
 use super::merge::bodies;
 use crate::clean::LineImage;
@@ -20,9 +20,7 @@ const OVER: f64 = 5.0;
 /// An arm is alone within this many line widths of the end, for that many at least, or there is none.
 const APART: f64 = 8.0;
 const LASTING: f64 = 0.5;
-/// Of thinner pens than this, in pixels, the courses are as long as of this one.
-const THIN: f64 = 3.0;
-/// What goes on in the stem turns and bends by less than this (15 degrees), and by so much less than what the body does.
+/// What goes on in the stem departs from it by less than this (a kink of 30 degrees), and by so much less than the body's arm.
 const STRAIGHT: f64 = 0.26;
 const MARGIN: f64 = 0.1;
 /// Rounds, each of which takes up a line once.
@@ -63,8 +61,11 @@ pub(super) fn straighten(image: &LineImage, lines: &mut Vec<Streamline>) {
     }
 }
 
-/// The forks at which lines end, none twice.
+/// The ends of lines that go on in the stem of a fork.
 fn forks(image: &LineImage, lines: &[Streamline]) -> Vec<Fork> {
+    if !lines.iter().any(|line| line.stops.contains(&Stop::Merged)) {
+        return Vec::new();
+    }
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
     let merged = |end: &&End| end.stop == Stop::Merged;
@@ -120,11 +121,11 @@ impl Fork {
         // The end's line towards the fork, the stem away from it.
         let tip = if self.side == 0 { end.points.len() - 1 - self.tip } else { self.tip };
         if self.side == 0 {
-            reverse(&mut end);
+            end.reverse();
         }
         let from = if self.forward { at } else { body.points.len() - 1 - at };
         if !self.forward {
-            reverse(&mut body);
+            body.reverse();
         }
         let away = (from + (AWAY * image.line_width.max(THIN) / STEP) as usize).min(body.points.len() - 1);
         let tail = Tail { point: end.points[tip], ..self.tail };
@@ -151,10 +152,4 @@ impl Fork {
 
 fn empty() -> Streamline {
     Streamline { points: Vec::new(), widths: Vec::new(), closed: false, stops: [Stop::Cut; 2] }
-}
-
-fn reverse(line: &mut Streamline) {
-    line.points.reverse();
-    line.widths.reverse();
-    line.stops.reverse();
 }

@@ -66,15 +66,13 @@ struct Course {
 impl Course {
     fn apply(self, line: &mut Streamline, side: usize) {
         if side == 1 {
-            line.points.reverse();
-            line.widths.reverse();
+            line.reverse();
         }
         let count = self.points.len();
         line.points.splice(..self.replaced, self.points);
         line.widths.splice(..self.replaced, vec![f64::NAN; count]);
         if side == 1 {
-            line.points.reverse();
-            line.widths.reverse();
+            line.reverse();
         }
         line.stops[side] = Stop::Joined;
     }

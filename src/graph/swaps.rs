@@ -5,8 +5,7 @@
 //! walks did, both lines are cut in the middle of it, and their parts are paired anew.
 
 use super::contacts::{LineIndex, Place};
-use super::course::{course, departure, run};
-use super::touches::{LARGEST, MARGIN};
+use super::course::{LARGEST, MARGIN, course, departure, run};
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Streamline};
 use rayon::prelude::*;
@@ -20,6 +19,7 @@ const OWN: f64 = 6.0;
 /// Arms begin this many line widths outside the shared ink; their course is that of so many.
 const AWAY: f64 = 0.75;
 const OVER: f64 = 5.0;
+
 /// A stretch of shared ink: first and last place on each of two lines.
 #[derive(Clone, Copy, Debug)]
 struct Shared {

@@ -6,7 +6,7 @@
 //! shared stretch is taken out of them, and the arms are joined anew.
 
 use super::contacts::LineIndex;
-use super::course::{bridge, course, departure, run};
+use super::course::{LARGEST, MARGIN, THIN, bridge, course, departure, run};
 use super::nodes::arm_line;
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline, Tail};
@@ -27,13 +27,8 @@ const LONGEST: f64 = 16.0;
 const MIDDLE: f64 = 8.0;
 /// An arm's course is that of this many line widths.
 const OVER: f64 = 3.0;
-/// Of thinner pens than this, in pixels, lengths are those of this one.
-const THIN: f64 = 3.0;
 /// All arms run along one another within this cosine's angle (40 degrees).
 const ALONG: f64 = 0.766;
-/// How far from an arc the way from one arm to another may be, and what another pairing must gain, radians.
-pub(super) const LARGEST: f64 = 0.4;
-pub(super) const MARGIN: f64 = 0.2;
 /// Ink that a stroke runs through has at least this much of a line's.
 const INKED: f32 = 0.4;
 
@@ -63,6 +58,9 @@ type Link = [Arm; 2];
 pub(super) fn part(image: &LineImage, lines: &mut Vec<Streamline>) {
     let turned: Vec<Streamline> = lines.iter().map(start_alone).collect();
     let stretches: Vec<Stretch> = (0..lines.len()).flat_map(|i| stretches(image, &turned, i)).collect();
+    if stretches.is_empty() {
+        return;
+    }
     let groups = shared(image, &turned, &stretches);
     let (mut repairs, mut left) = (Vec::new(), Vec::new());
     for group in groups {
@@ -155,9 +153,16 @@ fn shared(image: &LineImage, lines: &[Streamline], stretches: &[Stretch]) -> Vec
             }
         }
     }
+    grouped(stretches.to_vec(), &mut groups).into_values().collect()
+}
+
+/// The stretches of each group, by its root.
+fn grouped(stretches: Vec<Stretch>, groups: &mut UnionFind<usize>) -> BTreeMap<usize, Vec<Stretch>> {
     let mut members: BTreeMap<usize, Vec<Stretch>> = BTreeMap::new();
-    (0..stretches.len()).for_each(|s| members.entry(groups.find_mut(s)).or_default().push(stretches[s].clone()));
-    members.into_values().collect()
+    for (s, stretch) in stretches.into_iter().enumerate() {
+        members.entry(groups.find_mut(s)).or_default().push(stretch);
+    }
+    members
 }
 
 /// Groups that a short piece of a line joins, as one: in the middle of a touch, two lines can look like a single one.
@@ -187,11 +192,10 @@ fn over_middles(image: &LineImage, groups: Vec<Vec<Stretch>>) -> Vec<Vec<Stretch
         groups.union(*of_group.entry(g).or_insert(place), place);
     }
     let joined: BTreeSet<usize> = (0..whole.len()).filter(|&s| is_joined[s]).map(|s| groups.find_mut(s)).collect();
-    let mut members: BTreeMap<usize, Vec<Stretch>> = BTreeMap::new();
-    for (s, stretch) in whole.into_iter().enumerate() {
-        members.entry(groups.find_mut(s)).or_default().push(stretch);
-    }
-    members.into_iter().filter_map(|(root, group)| joined.contains(&root).then_some(group)).collect()
+    grouped(whole, &mut groups)
+        .into_iter()
+        .filter_map(|(root, group)| joined.contains(&root).then_some(group))
+        .collect()
 }
 
 /// The pairing of a touch's four arms, if it is not that of the walks.
@@ -331,9 +335,7 @@ fn chained(pieces: Vec<Piece>, arms: &[Arm]) -> Vec<Streamline> {
 fn oriented(line: &Streamline, side: usize) -> Streamline {
     let mut line = line.clone();
     if side == 1 {
-        line.points.reverse();
-        line.widths.reverse();
-        line.stops.reverse();
+        line.reverse();
     }
     line
 }

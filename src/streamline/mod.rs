@@ -64,6 +64,13 @@ pub struct Streamline {
 }
 
 impl Streamline {
+    /// The same line from its other end.
+    pub(crate) fn reverse(&mut self) {
+        self.points.reverse();
+        self.widths.reverse();
+        self.stops.reverse();
+    }
+
     /// Checks what the later stages rely on, after somebody else may have changed it.
     ///
     /// # Errors

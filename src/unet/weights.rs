@@ -68,7 +68,7 @@ impl Weights {
 
     /// Other numbers for a network of this shape.
     pub(super) fn with_bytes(&self, bytes: Cow<'static, [u8]>) -> Self {
-        Self { bytes, ..self.clone() }
+        Self { name: self.name.clone(), config: self.config, bytes }
     }
 
     #[cfg(feature = "train")]
