@@ -1,6 +1,6 @@
 //! The result: strokes and filled shapes in pixel coordinates.
 
-use kurbo::{Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, Point, Shape, Vec2};
+use kurbo::{Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, Point, Rect, RoundedRect, Shape, Vec2};
 use std::fmt;
 use std::str::FromStr;
 
@@ -160,6 +160,39 @@ impl Centreline {
             Self::Circle(_) => true,
             Self::Dot(_) => false,
         }
+    }
+
+    /// The upright rectangle, its corners sharp or rounded alike, that a closed chain of lines and arcs follows to
+    /// within a distance, once around. `None` if there is none.
+    pub fn as_rounded_rect(&self, within: f64) -> Option<RoundedRect> {
+        let Self::Path { segments, closed: true } = self else { return None };
+        let mut radii = Vec::new();
+        for segment in segments {
+            match segment {
+                Segment::Line(l) if (l.p1.x - l.p0.x).abs().min((l.p1.y - l.p0.y).abs()) <= within => {}
+                Segment::Arc(a) => radii.push(a.radii.x),
+                _ => return None,
+            }
+        }
+        // The sides, and where arcs of a quarter or a half touch them.
+        let touching = || segments.iter().flat_map(|s| [0.0, 0.5].map(|t| s.eval(t)));
+        let start = segments.first()?.start();
+        let bounds = touching().fold(Rect::from_points(start, start), |bounds, p| bounds.union_pt(p));
+        let shorter = bounds.width().min(bounds.height());
+        let radius = radii.iter().sum::<f64>() / radii.len().max(1) as f64;
+        // Two half circles leave nothing between them.
+        let radius = if (0.5 * shorter - radius).abs() <= within { 0.5 * shorter } else { radius };
+        let inner = bounds.inset(-radius);
+        let off = |p: Point| {
+            let out = Vec2::new((p.x - inner.center().x).abs(), (p.y - inner.center().y).abs())
+                - Vec2::new(0.5 * inner.width(), 0.5 * inner.height());
+            let outside = Vec2::new(out.x.max(0.0), out.y.max(0.0)).hypot();
+            (outside + out.x.max(out.y).min(0.0) - radius).abs()
+        };
+        let follows = touching().all(|p| off(p) <= within);
+        let rect = RoundedRect::from_rect(bounds, radius);
+        let around = (rect.perimeter(1e-3) - self.to_path().perimeter(1e-3)).abs() <= 16.0 * within + 1e-2;
+        (follows && around && radius <= 0.5 * shorter && shorter > 8.0 * within).then_some(rect)
     }
 
     /// The same line walked from its end to its start.

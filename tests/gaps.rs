@@ -3,7 +3,7 @@
 mod common;
 
 use common::compare::{apart, bow, common_ink, lines};
-use common::draw::{arc, line, on_paper, polar, rendered, scan, scan_of, sheet};
+use common::draw::{arc, line, on_paper, polar, polyline, rendered, scan, scan_of, sheet};
 use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Dashes, Drawing, Stroke};
@@ -13,7 +13,7 @@ use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::render::render;
 use fieldtrace::write::graph_json::{from_json, to_json};
 use fieldtrace::write::{SvgOptions, to_svg};
-use kurbo::{Point, Vec2};
+use kurbo::{BezPath, ParamCurve, ParamCurveArclen, Point, RoundedRect, Shape, Vec2};
 
 const CENTER: Point = Point::new(80.3, 79.8);
 
@@ -163,8 +163,45 @@ fn a_dashed_circle_is_one_closed_stroke() {
         let [stroke] = &joined.strokes[..] else { return Err(format!("{} strokes", joined.strokes.len())) };
         ensure(stroke.centreline.is_closed() && stroke.dashes.is_some(), || "not dashed and closed".into())?;
         let period = stroke.dashes.map_or(0.0, |d| d.dash + d.gap);
-        ensure((period - radius * turn).abs() < 0.3, || format!("a period of {period:.2}"))
+        ensure((period - radius * turn).abs() < 0.3, || format!("a period of {period:.2}"))?;
+        let common = common_ink(&truth, &joined);
+        ensure(common > 0.9, || format!("{common:.2} of the ink"))
     });
+}
+
+#[test]
+fn a_dashed_rectangle_with_round_corners_keeps_its_dashes_where_they_are() {
+    sweep("dashed rectangles", 0.875, &pairs(&steps(0.0, 14.0, 2.0), &[30.0, 40.0, 48.0]), |&(start, radius)| {
+        let rect = RoundedRect::new(20.0, 30.0, 140.0, 130.0, radius);
+        let length = rect.perimeter(1e-3);
+        let (count, dash) = (30.0, 0.55 * length / 30.0);
+        // Each dash as a line of its own, so that what is drawn owes nothing to dash arrays.
+        let at = |s: f64| point_along(&rect.to_path(1e-3), s.rem_euclid(length));
+        let piece = |k: i32| {
+            let from = start + f64::from(k) * length / count;
+            let points: Vec<Point> = (0..=16).map(|i| at(from + dash * f64::from(i) / 16.0)).collect();
+            polyline(&points, false, 3.0)
+        };
+        let truth = page((0..count as i32).map(piece).collect());
+        let joined = traced(&scan(&truth), None, Dashing::Join);
+        let [stroke] = &joined.strokes[..] else { return Err(format!("{} strokes", joined.strokes.len())) };
+        ensure(stroke.centreline.is_closed() && stroke.dashes.is_some(), || "not dashed and closed".into())?;
+        let common = common_ink(&truth, &joined);
+        ensure(common > 0.85, || format!("{common:.2} of the ink"))
+    });
+}
+
+/// The point of a path at a distance from its start.
+fn point_along(path: &BezPath, distance: f64) -> Point {
+    let mut left = distance;
+    for piece in path.segments() {
+        let length = piece.arclen(1e-3);
+        if left <= length {
+            return piece.eval(piece.inv_arclen(left, 1e-3));
+        }
+        left -= length;
+    }
+    path.segments().next().expect("a path").start()
 }
 
 #[test]

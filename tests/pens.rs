@@ -38,7 +38,7 @@ fn a_line_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(0.0, 170.0, 10.0), &PENS);
     figures(
         "ends of lines of every width",
-        0.755,
+        0.894,
         &cases,
         |&(angle, width)| {
             let center = CENTER + kurbo::Vec2::new(0.3, 0.7);
@@ -60,7 +60,7 @@ fn an_arc_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(60.0, 300.0, 60.0), &PENS);
     figures(
         "ends of arcs of every width",
-        0.72,
+        0.86,
         &cases,
         |&(sweep, width)| page(vec![arc(CENTER, 64.0, 0.3, sweep.to_radians(), width)]),
         |_, truth, traced| {
@@ -99,7 +99,7 @@ fn two_pens() -> Vec<(f64, f64)> {
 fn lines_of_two_widths_side_by_side_keep_theirs() {
     figures(
         "two pens side by side",
-        0.261,
+        0.357,
         &pairs(&two_pens(), &[0.0, 30.0]),
         |&((wide, thin), turn)| {
             let bar = |side: f64, width: f64| {
@@ -119,7 +119,7 @@ fn lines_of_two_widths_side_by_side_keep_theirs() {
 fn lines_of_two_widths_cross_straight() {
     figures(
         "two pens that cross",
-        0.357,
+        0.404,
         &pairs(&two_pens(), &[90.0, 50.0]),
         |&((wide, thin), between)| {
             let bar = |angle, width| line(polar(CENTER, angle, -80.0), polar(CENTER, angle, 80.0), width);

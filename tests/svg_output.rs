@@ -4,7 +4,7 @@ use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
 use fieldtrace::write::{SvgOptions, to_svg};
 use kurbo::{Arc, Circle, CubicBez, Line, PathEl, Point, Rect, Shape, Vec2};
 use proptest::prelude::*;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use usvg::tiny_skia_path::PathSegment;
 
 fn stroke(centreline: Centreline, width: f64) -> Stroke {
@@ -174,6 +174,39 @@ fn plain_shapes_are_written_as_such() {
         r#"width="100""#,
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+#[test]
+fn an_upright_rectangle_is_written_as_one() {
+    let edges = |points: [(f64, f64); 4]| {
+        let ends = points.iter().zip(points.iter().cycle().skip(1));
+        ends.map(|(a, b)| Segment::Line(Line::new(*a, *b))).collect::<Vec<_>>()
+    };
+    let quarter = |centre: (f64, f64), angle: f64| Segment::Arc(Arc::new(centre, (4.0, 4.0), angle, FRAC_PI_2, 0.0));
+    let round = vec![
+        Segment::Line(Line::new((14.0, 10.0), (36.0, 10.0))),
+        quarter((36.0, 14.0), -FRAC_PI_2),
+        Segment::Line(Line::new((40.0, 14.0), (40.0, 26.0))),
+        quarter((36.0, 26.0), 0.0),
+        Segment::Line(Line::new((36.0, 30.0), (14.0, 30.0))),
+        quarter((14.0, 26.0), FRAC_PI_2),
+        Segment::Line(Line::new((10.0, 26.0), (10.0, 14.0))),
+        quarter((14.0, 14.0), PI),
+    ];
+    let sharp = edges([(50.004, 5.0), (80.0, 5.0), (80.0, 25.5), (50.004, 25.5)]);
+    let slanted = edges([(50.0, 30.0), (80.0, 30.1), (80.0, 45.0), (50.0, 45.0)]);
+    let written = |segments: Vec<Segment>, closed: bool| {
+        let mut drawing = Drawing::new(100.0, 50.0);
+        drawing.strokes.push(stroke(chain(segments, closed), 2.0));
+        svg(&drawing)
+    };
+    let text = written(round, true);
+    assert!(text.contains(r#"<rect height="20" rx="4" stroke-width="2" width="30" x="10" y="10"/>"#), "{text}");
+    let text = written(sharp.clone(), true);
+    assert!(text.contains(r#"<rect height="20.5" stroke-width="2" width="30" x="50" y="5"/>"#), "{text}");
+    for text in [written(sharp[..3].to_vec(), false), written(slanted, true)] {
+        assert!(!text.contains("<rect"), "{text}");
     }
 }
 

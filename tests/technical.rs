@@ -11,7 +11,8 @@ use common::draw::{SPECKLESS, circle, line, on_paper, polar, polyline, sheet};
 use common::figures::{figures, figures_on, like_stroke, nearest, nearest_end, same_length, same_strokes, straight};
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
-use kurbo::{BezPath, Line, ParamCurve, Point, Shape, Vec2};
+use kurbo::{Arc, BezPath, Line, ParamCurve, Point, Shape, Vec2};
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
 use std::slice::from_ref;
 
 const CENTER: Point = Point::new(60.0, 60.0);
@@ -64,7 +65,7 @@ fn lines_that_run_together_are_two() {
     let cases = pairs(&pairs(&[6.0, 9.0, 12.0, 16.0], &WIDTHS), &TURNS);
     figures(
         "wedges",
-        0.875,
+        0.906,
         &cases,
         |&((between, width), turn)| {
             let tip = polar(CENTER, turn, -54.0);
@@ -140,7 +141,7 @@ fn hatching_in_a_frame_ends_on_the_frame() {
         strokes.extend(hatching(CENTER, 44.0, angle, gap * width).iter().map(|l| line(l.p0, l.p1, width)));
         page(strokes)
     };
-    figures("hatching in a frame", 0.296, &cases, drawn, |&(_, width), truth, traced| {
+    figures("hatching in a frame", 0.222, &cases, drawn, |&(_, width), truth, traced| {
         same_strokes(truth, traced, 0.3 * width + 0.5)?;
         let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
         ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
@@ -152,7 +153,7 @@ fn an_open_arrow_head_is_a_corner_at_the_end_of_a_shaft() {
     let cases = pairs(&pairs(&pairs(&[15.0, 20.0, 30.0, 45.0], &[5.0, 8.0]), &WIDTHS), &[0.0, 17.0, 90.0, 225.0]);
     figures(
         "open arrow heads",
-        0.734,
+        0.82,
         &cases,
         |&(((opening, size), width), turn)| {
             let tip = polar(CENTER, turn, 46.0);
@@ -202,7 +203,7 @@ fn a_filled_arrow_head_is_a_filled_region_at_the_end_of_a_shaft() {
         .collect();
     figures(
         "filled arrow heads",
-        0.65,
+        0.7,
         &cases,
         |&(((opening, size), width), turn)| {
             let tip = polar(CENTER, turn, 50.0);
@@ -264,7 +265,7 @@ fn an_upright_rectangle_keeps_to_the_axes_exactly() {
     let cases = pairs(&[1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0], &shifts);
     figures(
         "upright rectangles",
-        0.916,
+        0.972,
         &cases,
         |&(width, shift)| rectangle(shift, width),
         |&(width, _), truth, traced| upright(truth, traced, 0.05 * width + 0.35),
@@ -282,6 +283,60 @@ fn an_upright_rectangle_in_pencil_keeps_to_the_axes_exactly() {
         |&(width, shift)| rectangle(shift, width),
         |&(width, shift), drawing| pencil(drawing, width + shift.x),
         |&(width, _), truth, traced| upright(truth, traced, 0.05 * width + 0.6),
+    );
+}
+
+/// An upright rectangle about the middle whose corners are rounded.
+fn rounded(shift: Vec2, radius: f64, width: f64) -> Drawing {
+    let (inner, middle) = (Vec2::new(44.0 - radius, 30.0 - radius), CENTER + shift);
+    let mut segments = Vec::new();
+    let mut at = middle + Vec2::new(-inner.x, -30.0);
+    for (side, start) in [(Vec2::new(1.0, -1.0), -90.0), (Vec2::new(1.0, 1.0), 0.0), (Vec2::new(-1.0, 1.0), 90.0)]
+        .into_iter()
+        .chain([(Vec2::new(-1.0, -1.0), 180.0)])
+    {
+        let centre = middle + Vec2::new(side.x * inner.x, side.y * inner.y);
+        segments.push(Segment::Line(Line::new(at, polar(centre, start, radius))));
+        let start_angle = f64::to_radians(start);
+        segments.push(Segment::Arc(Arc::new(centre, (radius, radius), start_angle, FRAC_PI_2, 0.0)));
+        at = polar(centre, start + 90.0, radius);
+    }
+    let centreline = Centreline::Path { segments, closed: true };
+    page(vec![Stroke { centreline, width, color: Color::BLACK, dashes: None }])
+}
+
+/// One exact rectangle with corners of about the radius.
+fn is_rounded(radius: f64, truth: &Drawing, traced: &Drawing, tolerance: f64) -> Result<(), String> {
+    same_strokes(truth, traced, tolerance)?;
+    let rect = traced.strokes[0].centreline.as_rounded_rect(1e-6).ok_or("no rectangle")?;
+    let found = rect.radii().top_left;
+    // What moves the middle of a corner by less than the tolerance.
+    ensure((found - radius).abs() <= tolerance / (SQRT_2 - 1.0), || format!("a radius of {found:.2} for {radius}"))
+}
+
+#[test]
+fn a_rectangle_with_round_corners_is_one_exactly() {
+    let shifts = [Vec2::ZERO, Vec2::new(0.5, 0.5), Vec2::new(0.27, 0.81)];
+    let cases = pairs(&pairs(&[2.0, 3.0, 4.5, 7.0, 10.0], &[12.0, 18.0, 24.0, 29.9]), &shifts);
+    figures(
+        "round rectangles",
+        1.0,
+        &cases,
+        |&((width, radius), shift)| rounded(shift, radius, width),
+        |&((width, radius), _), truth, traced| is_rounded(radius, truth, traced, 0.02 * width + 0.2),
+    );
+}
+
+#[test]
+fn a_rectangle_with_round_corners_in_pencil_is_one_exactly() {
+    let cases = pairs(&pairs(&[3.0, 4.5, 7.0], &[12.0, 18.0, 24.0]), &[Vec2::ZERO, Vec2::new(0.27, 0.81)]);
+    figures_on(
+        "round rectangles in pencil",
+        1.0,
+        &cases,
+        |&((width, radius), shift)| rounded(shift, radius, width),
+        |&((width, radius), shift), drawing| pencil(drawing, width + radius + shift.x),
+        |&((width, radius), _), truth, traced| is_rounded(radius, truth, traced, 0.05 * width + 0.6),
     );
 }
 

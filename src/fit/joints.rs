@@ -3,6 +3,7 @@
 use super::Tolerance;
 use super::arc::{arc_from_tangent, end_tangent, fit_circle};
 use super::cubic::{Ends, fit_cubic, tangents};
+use super::fillet::{CHORDS, Fillet, fit_fillet, rounded};
 use super::line::fit_line;
 use super::samples::Samples;
 use super::segmentation::{Kind, Piece, near};
@@ -20,7 +21,9 @@ const ARC_KINK: f64 = 0.026;
 const QUARTER: f64 = 1.75;
 
 /// A joined curve may miss its points by this many times what is taken for noise, root mean square.
-const MISFIT: f64 = 2.0;
+const MISFIT: f64 = 1.2;
+/// How far to both sides of a joint of curves its course is looked at, in line widths.
+const COURSE: f64 = 2.0;
 /// Lines shorter than this many line widths give way to a curve beside them.
 const SHORT: f64 = 5.0;
 /// How many pieces of a section are given more freedom.
@@ -58,14 +61,17 @@ pub(super) fn join(
     ends: [Option<Point>; 2],
     tolerance: Tolerance,
 ) -> Vec<Segment> {
-    let mut pieces = pieces.to_vec();
-    let limit = MISFIT * tolerance.deviation(samples);
+    let mut pieces = rounded(samples, pieces, closed, tolerance);
+    let deviation = tolerance.deviation(samples);
     for _ in 0..REPAIRS {
         let segments = join_once(samples, &pieces, closed, ends, tolerance);
-        let misfits = pieces.iter().zip(&segments).map(|(piece, of_piece)| misfit(samples, *piece, of_piece));
+        let misfits = pieces.iter().zip(&segments).map(|(piece, of_piece)| {
+            let noise = if let [Segment::Arc(_)] = of_piece[..] { deviation.max(CHORDS) } else { deviation };
+            misfit(samples, *piece, of_piece) / noise
+        });
         let worst = misfits.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         match worst {
-            Some((k, misfit)) if misfit > limit && repair(samples, &mut pieces, k, closed, tolerance) => {}
+            Some((k, misfit)) if misfit > MISFIT && repair(samples, &mut pieces, k, closed, tolerance) => {}
             _ => return segments.concat(),
         }
     }
@@ -124,13 +130,14 @@ fn join_once(
         let joint = match (k, closed) {
             (0, false) => loose(&drafts[0], true, ends[0]),
             (k, false) if k == n => loose(&drafts[n - 1], false, ends[1]),
-            (k, _) => meet(&drafts[(k + n - 1) % n], &drafts[k % n], tolerance),
+            (k, _) => meet(samples, &drafts[(k + n - 1) % n], &drafts[k % n], tolerance),
         };
         joints.push(joint);
     }
     for (k, draft) in drafts.iter().enumerate() {
         align_tangents(draft, k, n, closed, &mut joints);
     }
+    round_corners(samples, &drafts, closed, &mut joints);
     drafts.iter().enumerate().map(|(k, d)| segments(samples, d, joints[k], joints[k + 1], tolerance)).collect()
 }
 
@@ -181,7 +188,7 @@ fn loose(draft: &Draft, at_start: bool, fixed: Option<Point>) -> Joint {
     Joint { point, tangent: None }
 }
 
-fn meet(a: &Draft, b: &Draft, tolerance: Tolerance) -> Joint {
+fn meet(samples: &Samples, a: &Draft, b: &Draft, tolerance: Tolerance) -> Joint {
     let turn = a.end_tangent.cross(b.start_tangent).atan2(a.end_tangent.dot(b.start_tangent));
     let middle = a.end.midpoint(b.start);
     let (line_a, line_b) = (a.piece.kind == Kind::Line, b.piece.kind == Kind::Line);
@@ -192,12 +199,21 @@ fn meet(a: &Draft, b: &Draft, tolerance: Tolerance) -> Joint {
     match (line_a, line_b) {
         (true, _) => Joint { point: foot(a, a.end_tangent), tangent: Some(a.end_tangent) },
         (_, true) => Joint { point: foot(b, b.start_tangent), tangent: Some(b.start_tangent) },
+        _ if let Some((point, tangent)) = course(samples, a, b, tolerance) => Joint { point, tangent: Some(tangent) },
         _ => {
             let length = |d: &Draft| ((d.piece.to - d.piece.from) as f64).sqrt();
             let sum = a.end_tangent * length(a) + b.start_tangent * length(b);
             Joint { point: middle, tangent: Some(sum.normalize()) }
         }
     }
+}
+
+/// Where a smooth line goes at the joint of two curves. The points around it know more of its direction there than the
+/// ends of two curves do.
+fn course(samples: &Samples, a: &Draft, b: &Draft, tolerance: Tolerance) -> Option<(Point, Vec2)> {
+    let at = samples.arc[a.piece.to];
+    let reach = (COURSE * tolerance.width).min(at - samples.arc[a.piece.from]).min(samples.arc[b.piece.to] - at);
+    if a.piece.to == b.piece.from { samples.course(a.piece.to, reach) } else { None }
 }
 
 /// Where two pieces meet at an angle: the crossing of their tangents, if it is near.
@@ -229,6 +245,38 @@ fn align_tangents(draft: &Draft, k: usize, n: usize, closed: bool, joints: &mut 
     }
     if closed && k + 1 == n {
         joints[0].tangent = joints[0].tangent.map(|_| d);
+    }
+}
+
+/// Lets every arc between two lines, smooth at both ends, start and end where it touches them.
+fn round_corners(samples: &Samples, drafts: &[Draft], closed: bool, joints: &mut [Joint]) {
+    let n = drafts.len();
+    for k in (0..n).filter(|&k| drafts[k].piece.kind == Kind::Arc && (closed || (k > 0 && k + 1 < n))) {
+        let (before, after) = ((k + n - 1) % n, (k + 1) % n);
+        let are_lines = [before, after].iter().all(|&j| drafts[j].piece.kind == Kind::Line);
+        let (Some(d), Some(e)) = (joints[k].tangent, joints[k + 1].tangent) else { continue };
+        if !are_lines {
+            continue;
+        }
+        let lines = [(drafts[before].on_line, d), (drafts[after].on_line, e)];
+        let Some(Fillet { start, end, .. }) = fit_fillet(samples, lines, drafts[k].piece.from, drafts[k].piece.to)
+        else {
+            continue;
+        };
+        // Each line keeps some of itself.
+        let leaves = |from: Point, to: Point, d: Vec2| (to - from).dot(d) > 0.0;
+        if leaves(joints[before].point, start, d) && leaves(end, joints[after + 1].point, e) {
+            set(joints, k, n, closed, start);
+            set(joints, k + 1, n, closed, end);
+        }
+    }
+}
+
+/// Moves a joint; the first and the last of a closed section are one.
+fn set(joints: &mut [Joint], k: usize, n: usize, closed: bool, point: Point) {
+    joints[k].point = point;
+    if closed && (k == 0 || k == n) {
+        (joints[0].point, joints[n].point) = (point, point);
     }
 }
 

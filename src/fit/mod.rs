@@ -7,9 +7,12 @@
 
 mod arc;
 mod cubic;
+mod dashes;
+mod fillet;
 mod joints;
 mod line;
 mod outline;
+mod rectangle;
 mod samples;
 mod segmentation;
 mod solid;
@@ -72,9 +75,11 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
             cancel.check()?;
             let walk = graph.walk(trail);
             let Some(centreline) = stroke::fit_trail(&walk, trail.closed, tolerance) else { return Ok(None) };
+            let centreline = rectangle::regular(centreline, tolerance);
+            let pattern = trail.dashes.filter(|_| trail.closed).map(|d| dashes::along(d, &walk, &centreline));
             let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(page.line_width);
             let width = unblurred_width(measured, page.blur);
-            let stroke = Stroke { centreline, width, color: trail.color, dashes: trail.dashes };
+            let stroke = Stroke { centreline, width, color: trail.color, dashes: pattern.or(trail.dashes) };
             if !outlined || stroke.dashes.is_some() {
                 return Ok(Some(Drawn::Stroke(stroke)));
             }

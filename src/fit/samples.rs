@@ -90,6 +90,33 @@ impl Samples {
         self.sums[to + 1].each(self.sums[from], |a, b| a - b)
     }
 
+    /// The place and the unit tangent of the line at point `k`: those of the parabola over their chord that fits the points
+    /// within a reach along the line best. `None` where they are too few.
+    pub fn course(&self, k: usize, reach: f64) -> Option<(Point, Vec2)> {
+        let from = self.arc.partition_point(|&a| a < self.arc[k] - reach);
+        let to = self.arc.partition_point(|&a| a <= self.arc[k] + reach).saturating_sub(1);
+        let chord = *self.points.get(to)? - self.points[from];
+        if to < from + 6 || chord.hypot() < 1e-6 {
+            return None;
+        }
+        let along = chord.normalize();
+        let near = || (from..=to).map(|i| (self.weights[i], self.points[i] - self.points[k]));
+        let sum = |f: &dyn Fn(f64, f64) -> f64| near().map(|(w, d)| w * f(d.dot(along), along.cross(d))).sum::<f64>();
+        let mean = |f: &dyn Fn(f64, f64) -> f64| sum(f) / sum(&|_, _| 1.0);
+        // The normal equations of y = a + b x + c x^2, central.
+        let (mx, mz, my) = (mean(&|x, _| x), mean(&|x, _| x * x), mean(&|_, y| y));
+        let (xx, xz) = (mean(&|x, _| (x - mx).powi(2)), mean(&|x, _| (x - mx) * (x * x - mz)));
+        let zz = mean(&|x, _| (x * x - mz).powi(2));
+        let (xy, zy) = (mean(&|x, y| (x - mx) * (y - my)), mean(&|x, y| (x * x - mz) * (y - my)));
+        let det = xx * zz - xz * xz;
+        if det <= 1e-9 * xx * zz {
+            return None;
+        }
+        let (b, c) = ((xy * zz - zy * xz) / det, (zy * xx - xy * xz) / det);
+        let place = self.points[k] + along.turn_90() * (my - b * mx - c * mz);
+        Some((place, (along + along.turn_90() * b).normalize()))
+    }
+
     /// How far points scatter about a smooth line, in pixels: from third differences over spans of `span` pixels,
     /// which neither slope nor curvature moves.
     pub fn scatter(&self, span: f64) -> f64 {
@@ -112,5 +139,30 @@ impl Samples {
     /// The point that sums are taken about.
     pub fn centre(&self) -> Point {
         self.centre
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_course_of_a_noisy_arc_is_its_tangent() {
+        for radius in [12.0, 40.0, 400.0] {
+            for turned in [0.0, 1.0, 2.5, 4.0] {
+                let at = |s: f64| Point::ORIGIN + radius * Vec2::from_angle(turned + s / radius);
+                // Off by as much to either side in turn.
+                let off = |k: i32| 0.05 * f64::from(k.rem_euclid(3) - 1);
+                let point = |k: i32| at(0.5 * f64::from(k)) + Vec2::from_angle(turned) * off(k);
+                let samples = Samples::new((-12..=12).map(point).collect(), vec![1.0; 25]);
+                let (place, tangent) = samples.course(12, 5.0).unwrap();
+                let truth = Vec2::from_angle(turned).turn_90();
+                assert!((place - at(0.0)).hypot() < 0.06, "{radius} {turned}: {place:?}");
+                assert!(
+                    tangent.cross(truth).abs() < 0.01 && tangent.dot(truth) > 0.0,
+                    "{radius} {turned}: {tangent:?}"
+                );
+            }
+        }
     }
 }

@@ -3,8 +3,9 @@
 use super::Tolerance;
 use super::arc::fit_circle;
 use super::joints::join;
+use super::rectangle;
 use super::samples::Samples;
-use super::segmentation::{Piece, segment};
+use super::segmentation::{Kind, Piece, segment};
 use crate::drawing::{Centreline, Segment};
 use crate::graph::TrailPoint;
 use kurbo::{Circle, Line, Point, Vec2};
@@ -172,7 +173,7 @@ fn bent_arc(segment: &Segment, start: Point, end: Point) -> Segment {
     }
 }
 
-/// A closed line without corners: a circle if it is one, else a chain that closes smoothly.
+/// A closed line without corners: a circle or a rectangle with round corners if it is one, else a chain that closes smoothly.
 fn smooth_loop(walk: &[TrailPoint], tolerance: Tolerance) -> Centreline {
     let around = |from: usize| {
         let mut line: Vec<TrailPoint> = walk[from..].to_vec();
@@ -183,9 +184,14 @@ fn smooth_loop(walk: &[TrailPoint], tolerance: Tolerance) -> Centreline {
     if let Some(circle) = circle(&samples, tolerance) {
         return Centreline::Circle(circle);
     }
-    // A first pass finds a joint to start from: a cut through the middle of a piece would split it.
+    if let Some(rectangle) = rectangle::round(&samples, tolerance) {
+        return rectangle;
+    }
+    // A first pass finds a joint to start from, before a line if there is one: a cut through the middle of a piece
+    // would split it.
     let pieces: Vec<Piece> = segment(&samples, tolerance);
-    let start = pieces.get(pieces.len() / 2).map_or(0, |p| p.from);
+    let after = pieces.iter().skip(1).max_by_key(|p| (p.kind == Kind::Line, p.to - p.from));
+    let start = after.map_or(0, |p| p.from);
     let samples = around(start.min(walk.len() - 1));
     let pieces = segment(&samples, tolerance);
     let segments = join(&samples, &pieces, true, [None, None], tolerance);

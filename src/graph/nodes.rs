@@ -3,6 +3,7 @@
 use super::contacts::{Contact, Place, Touch, around, direction, point_at};
 use super::ends::{End, end_id};
 use crate::clean::{LineImage, unblurred_width};
+use crate::profile::sharp_edge;
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
@@ -42,8 +43,12 @@ pub(super) struct Pair {
     pub turn: f64,
 }
 
-/// Standard deviation of what pixels blur by themselves, in pixels of the scan: that of a square of one pixel.
+/// Standard deviation of what pixels blur by themselves, in pixels of the scan: that of a square of one pixel. Where an
+/// edge is told by area, the interpolation of pixels across the cap counts too.
 const PIXEL: f64 = 0.29;
+const PIXEL_BY_AREA: f64 = 0.6;
+/// Ink that is a line behind a gap.
+const BEHIND_GAP: f32 = 0.9;
 /// How far past the last point of a walk its ink may go on, in pixels.
 const LOOK_AHEAD: f64 = 2.5;
 /// A jump in curvature counts as the turn that it makes over this many line widths.
@@ -226,12 +231,10 @@ impl Solver<'_> {
         if end.stop.is_cut_off() {
             return end.point;
         }
-        let width = unblurred_width(end.width, self.image.blur);
         let ink = |s: f64| self.image.ink.sample(end.point + heading * s);
-        let steps = ((end.width + LOOK_AHEAD) / 0.125) as usize;
-        let along = |k: usize| -end.width + 0.125 * k as f64;
-        let edge = (0..steps).map(along).find(|&s| ink(s) < 0.5).unwrap_or_else(|| near_side_of_gap(ink));
-        let drawn_in = blurred_cap(self.image.blur.max(PIXEL * self.image.scale), width);
+        let (edge, pixel) = edge_ahead(ink, end.width);
+        let width = unblurred_width(end.width, self.image.blur);
+        let drawn_in = blurred_cap(self.image.blur.max(pixel * self.image.scale), width);
         // Never past the middle of a short line.
         let half_length = 0.5 * (n as f64 - 1.0) * STEP;
         end.point + heading * (edge + drawn_in - 0.5 * width).max(-half_length + 0.25)
@@ -332,15 +335,33 @@ fn blurred_cap(blur: f64, width: f64) -> f64 {
     variance / (width + 8.0 * variance / width)
 }
 
-/// Where the ink along a line ends when another line lies so near behind it that no paper shows between: half of
-/// the missing ink before the lightest place.
-fn near_side_of_gap(ink: impl Fn(f64) -> f32) -> f64 {
+/// Where the ink of an end `width` wide stops ahead of it, and how much the pixels blur the cap there, as a standard
+/// deviation in pixels of the scan.
+fn edge_ahead(ink: impl Fn(f64) -> f32, width: f64) -> (f64, f64) {
     let step = 0.125;
+    let steps = ((width + LOOK_AHEAD) / step) as usize;
+    let mut along = (0..steps).map(|k| step * k as f64 - width);
+    match along.find(|&s| ink(s) < 0.5) {
+        Some(s) => sharp_edge(&ink, s - 0.5 * step, 1.0).map_or((s, PIXEL), |edge| (edge, PIXEL_BY_AREA)),
+        None => near_side_of_gap(ink),
+    }
+}
+
+/// The same where another line lies so near behind the end that no paper shows between: the missing ink around the
+/// lightest place is that of a gap of the same area and middle. Where it is not seen how the ink goes on behind it, half
+/// of what is missing lies before the lightest place.
+fn near_side_of_gap(ink: impl Fn(f64) -> f32) -> (f64, f64) {
+    let (step, reach) = (0.125, 12);
     let along = (0..=20).map(|k| step * f64::from(k));
     let lightest = along.min_by(|&a, &b| ink(a).total_cmp(&ink(b))).unwrap_or(0.0);
-    let around = (-10..=10).map(|k| lightest + step * f64::from(k));
-    let gap: f64 = around.map(|s| step * f64::from(1.0 - ink(s).min(1.0))).sum();
-    lightest - 0.5 * gap
+    let around = (-reach..=reach).map(|k| lightest + step * f64::from(k));
+    let missing = around.map(|s| (s, f64::from(1.0 - ink(s).min(1.0))));
+    let (area, moment) = missing.fold((0.0, 0.0), |(area, moment), (s, m)| (area + m, moment + s * m));
+    if area > 0.0 && ink(lightest + step * f64::from(reach)) > BEHIND_GAP {
+        (moment / area - 0.5 * step * area, PIXEL_BY_AREA)
+    } else {
+        (lightest - 0.5 * step * area, PIXEL)
+    }
 }
 
 /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.

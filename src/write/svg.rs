@@ -3,10 +3,10 @@
 use super::path_data::PathData;
 use super::{Rounding, pen_order};
 use crate::drawing::{Centreline, Color, Dashes, Drawing, Fill, Segment, Stroke};
-use kurbo::Shape;
+use kurbo::{Point, RoundedRect, Shape};
 use std::collections::BTreeMap;
 use svg::node::Comment;
-use svg::node::element::{Circle, Group, Line, Path, Title};
+use svg::node::element::{Circle, Group, Line, Path, Rectangle, Title};
 use svg::{Document, Node};
 
 /// How a drawing is written as SVG.
@@ -28,7 +28,7 @@ impl Default for SvgOptions {
 ///
 /// `viewBox` is in pixels; `width` and `height` are in millimetres where the drawing knows its DPI. Each pen
 /// colour is one Inkscape layer, lighter colours below darker ones, with its solid regions first and its
-/// strokes in [`pen_order`]. Strokes that are one line or a circle are written as such, and a dot as a
+/// strokes in [`pen_order`]. Strokes that are one line, a circle or an upright rectangle are written as such, and a dot as a
 /// path of almost no length, drawn by its round cap. Strokes and regions with a coordinate that is not
 /// finite are left out.
 pub fn to_svg(drawing: &Drawing, options: &SvgOptions) -> String {
@@ -175,6 +175,11 @@ impl Pen {
 fn append(group: &mut Group, centreline: &Centreline, pen: Pen, rounding: Rounding) {
     let text = |value: f64| rounding.text(value);
     let path = |d: String| pen.apply(Path::new().set("d", d), rounding);
+    let rect = centreline.as_rounded_rect(1e-6).filter(|r| r.width().min(r.height()) >= rounding.step());
+    if let Some(rect) = rect {
+        group.append(pen.apply(rectangle(&rect, rounding), rounding));
+        return;
+    }
     match centreline {
         Centreline::Path { segments, closed } => match (&segments[..], closed) {
             ([Segment::Line(l)], false) if rounding.point(l.p0) != rounding.point(l.p1) => {
@@ -195,4 +200,17 @@ fn append(group: &mut Group, centreline: &Centreline, pen: Pen, rounding: Roundi
         Centreline::Circle(c) => group.append(path(PathData::dot(rounding, c.center))),
         Centreline::Dot(p) => group.append(path(PathData::dot(rounding, *p))),
     }
+}
+
+fn rectangle(rounded: &RoundedRect, rounding: Rounding) -> Rectangle {
+    let (rect, radius) = (rounded.rect(), rounded.radii().top_left);
+    // Corners are rounded, not sizes: the far edges are as near to where they were as all else.
+    let (start, end) = (rounding.point(rect.origin()), rounding.point(Point::new(rect.x1, rect.y1)));
+    let text = |value: f64| rounding.text(value);
+    let plain = Rectangle::new()
+        .set("x", text(start.x))
+        .set("y", text(start.y))
+        .set("width", text(end.x - start.x))
+        .set("height", text(end.y - start.y));
+    if radius >= rounding.step() { plain.set("rx", text(radius)) } else { plain }
 }

@@ -1,0 +1,31 @@
+//! The pattern of a dashed line starts where its trail does. The centreline of a closed one may start elsewhere and run the
+//! other way around.
+
+use crate::drawing::{Centreline, Dashes};
+use crate::graph::TrailPoint;
+use kurbo::{ParamCurve, ParamCurveArclen, ParamCurveDeriv, ParamCurveNearest, PathSeg, Vec2};
+
+const ACCURACY: f64 = 1e-3;
+
+/// The pattern of a walk, seen from the start of its centreline.
+pub(super) fn along(dashes: Dashes, walk: &[TrailPoint], centreline: &Centreline) -> Dashes {
+    let [first, second, ..] = walk else { return dashes };
+    let pieces: Vec<PathSeg> = centreline.to_path().segments().collect();
+    let nearest = |piece: &PathSeg| piece.nearest(first.point, ACCURACY);
+    let nearest = pieces.iter().map(nearest).enumerate();
+    let Some((k, at)) = nearest.min_by(|a, b| a.1.distance_sq.total_cmp(&b.1.distance_sq)) else { return dashes };
+    let before: f64 = pieces[..k].iter().map(|piece| piece.arclen(ACCURACY)).sum();
+    let start = before + pieces[k].subsegment(0.0..at.t).arclen(ACCURACY);
+    let onwards = tangent(&pieces[k], at.t).dot(second.point - first.point) >= 0.0;
+    // Seen from its end, a pattern starts with the end of a dash.
+    let offset = if onwards { dashes.offset - start } else { dashes.dash - dashes.offset - start };
+    Dashes { offset: offset.rem_euclid(dashes.dash + dashes.gap), ..dashes }
+}
+
+fn tangent(piece: &PathSeg, t: f64) -> Vec2 {
+    match piece {
+        PathSeg::Line(line) => line.p1 - line.p0,
+        PathSeg::Quad(quad) => quad.deriv().eval(t).to_vec2(),
+        PathSeg::Cubic(cubic) => cubic.deriv().eval(t).to_vec2(),
+    }
+}
