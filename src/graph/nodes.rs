@@ -46,7 +46,7 @@ pub(super) struct Pair {
 /// Standard deviation of what pixels blur by themselves, in pixels of the scan: that of a square of one pixel. Where an
 /// edge is told by area, the interpolation of pixels across the cap counts too.
 const PIXEL: f64 = 0.29;
-const PIXEL_BY_AREA: f64 = 0.6;
+const PIXEL_BY_AREA: f64 = 0.65;
 /// Ink that is a line behind a gap.
 const BEHIND_GAP: f32 = 0.9;
 /// How far past the last point of a walk its ink may go on, in pixels.
