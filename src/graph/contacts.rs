@@ -24,8 +24,10 @@ pub(super) struct Place {
     pub at: f64,
 }
 
-/// How far apart, in line widths, the walks along the arms of a blunt corner may end.
+/// How far apart, in line widths, the walks along the arms of a blunt corner may end; where no grain can pass for ink,
+/// their ends may be further apart.
 const BLUNT: f64 = 1.2;
+const BLUNT_ON_CLEAN: f64 = 3.0;
 
 /// What an end meets.
 #[derive(Clone, Copy, Debug)]
@@ -343,11 +345,14 @@ impl Finder<'_> {
         let free: Vec<&End> = free.collect();
         let places = free.iter().enumerate().map(|(i, e)| GeomWithData::new([e.point.x, e.point.y], i));
         let tree = RTree::bulk_load(places.collect());
-        let reach = BLUNT * self.image.line_width.max(1.5);
+        let widths = if self.image.noise > 0.0 { BLUNT } else { BLUNT_ON_CLEAN };
+        let reach = widths * self.image.line_width.max(1.5);
         let nearest = |end: &End| {
             let others = tree.nearest_neighbor_iter(&[end.point.x, end.point.y]).map(|near| free[near.data]);
             let mut others = others.take_while(|o| (o.point - end.point).hypot() <= reach);
-            others.find(|o| (o.line, o.side) != (end.line, end.side))
+            // A short line's own ends are not one another's.
+            let long = self.lines[end.line].points.len() as f64 * STEP > 3.0 * reach;
+            others.find(|o| o.line != end.line || (o.side != end.side && long))
         };
         let corner = |end: &&End| {
             let other = nearest(end)?;
