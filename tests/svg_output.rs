@@ -1,6 +1,6 @@
 //! The SVG text, read back by another library, is the drawing.
 
-use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
+use fieldtrace::drawing::{Centreline, Color, Dashes, Drawing, Fill, Segment, Stroke};
 use fieldtrace::write::{SvgOptions, to_svg};
 use kurbo::{Arc, Circle, CubicBez, Line, PathEl, Point, Rect, Shape, Vec2};
 use proptest::prelude::*;
@@ -208,6 +208,35 @@ fn an_upright_rectangle_is_written_as_one() {
     for text in [written(sharp[..3].to_vec(), false), written(slanted, true)] {
         assert!(!text.contains("<rect"), "{text}");
     }
+}
+
+#[test]
+fn the_pattern_of_a_closed_line_is_its_own_whatever_the_order() {
+    let mut state = 7u64;
+    let mut next = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        100.0 * (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for _ in 0..40 {
+        let mut drawing = Drawing::new(100.0, 100.0);
+        for k in 0..12 {
+            let (p, q) = (Point::new(next(), next()), Point::new(next(), next()));
+            let centreline = match k % 3 {
+                0 => Centreline::Circle(Circle::new(p, 5.0)),
+                _ => chain(vec![Segment::Line(Line::new(p, q))], false),
+            };
+            let dashes = (k % 3 == 0).then_some(Dashes { dash: 3.0, gap: 2.0, offset: 1.25 });
+            drawing.strokes.push(Stroke { dashes, ..stroke(centreline, 1.0) });
+        }
+        assert_eq!(svg(&drawing).matches(r#"stroke-dashoffset="1.25""#).count(), 4);
+    }
+    // A rectangle does not say where its pattern starts.
+    let corners = [(60.0, 5.0), (80.0, 5.0), (80.0, 25.0), (50.0, 25.0), (50.0, 5.0), (60.0, 5.0)].map(Point::from);
+    let edges = corners.windows(2).map(|p| Segment::Line(Line::new(p[0], p[1]))).collect();
+    let mut drawing = Drawing::new(100.0, 50.0);
+    let dashes = Some(Dashes { dash: 3.0, gap: 2.0, offset: 0.0 });
+    drawing.strokes.push(Stroke { dashes, ..stroke(chain(edges, true), 2.0) });
+    assert!(!svg(&drawing).contains("<rect"), "{}", svg(&drawing));
 }
 
 #[test]

@@ -143,7 +143,10 @@ fn group(number: usize, color: Color, layer: &Layer, spare_width: f64, rounding:
         } else {
             &stroke.centreline
         };
-        let dashes = stroke.dashes.map(|d| if reversed { d.reversed(centreline.to_path().perimeter(1e-3)) } else { d });
+        // A circle is written the same way around.
+        let other_way = reversed && matches!(centreline, Centreline::Path { .. });
+        let dashes =
+            stroke.dashes.map(|d| if other_way { d.reversed(centreline.to_path().perimeter(1e-3)) } else { d });
         append(&mut group, centreline, Pen { width, dashes }, rounding);
     }
     group
@@ -175,7 +178,9 @@ impl Pen {
 fn append(group: &mut Group, centreline: &Centreline, pen: Pen, rounding: Rounding) {
     let text = |value: f64| rounding.text(value);
     let path = |d: String| pen.apply(Path::new().set("d", d), rounding);
-    let rect = centreline.as_rounded_rect(1e-6).filter(|r| r.width().min(r.height()) >= rounding.step());
+    // A pattern starts where the line does, which a rectangle does not say.
+    let rect = if pen.dashes.is_none() { centreline.as_rounded_rect(1e-6) } else { None };
+    let rect = rect.filter(|r| r.width().min(r.height()) >= rounding.step());
     if let Some(rect) = rect {
         group.append(pen.apply(rectangle(&rect, rounding), rounding));
         return;
