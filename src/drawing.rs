@@ -182,14 +182,7 @@ impl Centreline {
         let radius = radii.iter().sum::<f64>() / radii.len().max(1) as f64;
         // Two half circles leave nothing between them.
         let radius = if (0.5 * shorter - radius).abs() <= within { 0.5 * shorter } else { radius };
-        let inner = bounds.inset(-radius);
-        let off = |p: Point| {
-            let out = Vec2::new((p.x - inner.center().x).abs(), (p.y - inner.center().y).abs())
-                - Vec2::new(0.5 * inner.width(), 0.5 * inner.height());
-            let outside = Vec2::new(out.x.max(0.0), out.y.max(0.0)).hypot();
-            (outside + out.x.max(out.y).min(0.0) - radius).abs()
-        };
-        let follows = touching().all(|p| off(p) <= within);
+        let follows = touching().all(|p| outside_rounded(bounds, radius, p).0.abs() <= within);
         let rect = RoundedRect::from_rect(bounds, radius);
         let around = (rect.perimeter(1e-3) - self.to_path().perimeter(1e-3)).abs() <= 16.0 * within + 1e-2;
         (follows && around && radius <= 0.5 * shorter && shorter > 8.0 * within).then_some(rect)
@@ -222,6 +215,18 @@ impl Centreline {
             Self::Dot(p) => Self::Dot(map * *p),
         }
     }
+}
+
+/// How far a point lies outside a rectangle with corners of a radius, and the unit vector that leads outwards from there.
+pub(crate) fn outside_rounded(rect: Rect, radius: f64, p: Point) -> (f64, Vec2) {
+    let d = p - rect.center();
+    let out = Vec2::new(d.x.abs() - 0.5 * rect.width() + radius, d.y.abs() - 0.5 * rect.height() + radius);
+    let (distance, normal) = match (out.x > 0.0, out.y > 0.0) {
+        (true, true) => (out.hypot(), out.normalize()),
+        _ if out.x > out.y => (out.x, Vec2::new(1.0, 0.0)),
+        _ => (out.y, Vec2::new(0.0, 1.0)),
+    };
+    (distance - radius, Vec2::new(normal.x.copysign(d.x), normal.y.copysign(d.y)))
 }
 
 /// The pattern of a dashed line, in pixels along the pen's path; round caps reach half a width beyond each dash.
@@ -258,6 +263,18 @@ pub struct Stroke {
     pub color: Color,
     /// The pattern of a dashed line.
     pub dashes: Option<Dashes>,
+}
+
+impl Stroke {
+    /// The same line walked from its end to its start, its pattern where it was.
+    pub fn reversed(&self) -> Self {
+        let dashes = match &self.centreline {
+            Centreline::Path { .. } => self.dashes.map(|d| d.reversed(self.centreline.to_path().perimeter(1e-3))),
+            // Walked as before.
+            Centreline::Circle(_) | Centreline::Dot(_) => self.dashes,
+        };
+        Self { centreline: self.centreline.reversed(), dashes, ..*self }
+    }
 }
 
 /// A solid region, too wide to be a line; even-odd outline.

@@ -291,11 +291,8 @@ fn rounded(shift: Vec2, radius: f64, width: f64) -> Drawing {
     let (inner, middle) = (Vec2::new(44.0 - radius, 30.0 - radius), CENTER + shift);
     let mut segments = Vec::new();
     let mut at = middle + Vec2::new(-inner.x, -30.0);
-    for (side, start) in [(Vec2::new(1.0, -1.0), -90.0), (Vec2::new(1.0, 1.0), 0.0), (Vec2::new(-1.0, 1.0), 90.0)]
-        .into_iter()
-        .chain([(Vec2::new(-1.0, -1.0), 180.0)])
-    {
-        let centre = middle + Vec2::new(side.x * inner.x, side.y * inner.y);
+    for (x, y, start) in [(1.0, -1.0, -90.0), (1.0, 1.0, 0.0), (-1.0, 1.0, 90.0), (-1.0, -1.0, 180.0)] {
+        let centre = middle + Vec2::new(x * inner.x, y * inner.y);
         segments.push(Segment::Line(Line::new(at, polar(centre, start, radius))));
         let start_angle = f64::to_radians(start);
         segments.push(Segment::Arc(Arc::new(centre, (radius, radius), start_angle, FRAC_PI_2, 0.0)));

@@ -17,9 +17,11 @@ pub(super) fn along(dashes: Dashes, walk: &[TrailPoint], centreline: &Centreline
     let before: f64 = pieces[..k].iter().map(|piece| piece.arclen(ACCURACY)).sum();
     let start = before + pieces[k].subsegment(0.0..at.t).arclen(ACCURACY);
     let onwards = tangent(&pieces[k], at.t).dot(second.point - first.point) >= 0.0;
-    // Seen from its end, a pattern starts with the end of a dash.
-    let offset = if onwards { dashes.offset - start } else { dashes.dash - dashes.offset - start };
-    Dashes { offset: offset.rem_euclid(dashes.dash + dashes.gap), ..dashes }
+    if onwards {
+        Dashes { offset: (dashes.offset - start).rem_euclid(dashes.dash + dashes.gap), ..dashes }
+    } else {
+        dashes.reversed(start)
+    }
 }
 
 fn tangent(piece: &PathSeg, t: f64) -> Vec2 {

@@ -13,8 +13,6 @@ use kurbo::{Point, Vec2};
 /// Points may lie this far off an arc, root mean square in pixels, whatever else is taken for noise: rasterisers draw
 /// curves as chords.
 pub(super) const CHORDS: f64 = 0.12;
-/// No point lies further off an arc than this many times what is taken for noise.
-pub(super) const WORST: f64 = 3.0;
 /// Lines that turn by less than this (8 degrees) have no corner to round.
 const LEAST_TURN: f64 = 0.14;
 /// The most pieces that one fillet replaces.
@@ -112,14 +110,9 @@ pub(super) fn rounded(samples: &Samples, pieces: &[Piece], closed: bool, toleran
 /// Whether one circle explains the samples `from..=to`.
 fn is_arc(samples: &Samples, from: usize, to: usize, limit: f64) -> bool {
     let Some(circle) = fit_circle(samples, from, to) else { return false };
-    let (mut weight, mut worst) = (0.0, 0.0_f64);
-    for k in from..=to {
-        let off = ((samples.points[k] - circle.centre).hypot() - circle.radius).abs();
-        weight += samples.weights[k];
-        worst = worst.max(samples.weights[k] * off);
-    }
     let sweep = (samples.arc[to] - samples.arc[from]) / circle.radius;
-    circle.error <= limit * limit * weight && worst <= WORST * limit && sweep < MOST_SWEEP
+    let off = |_, p: Point| (p - circle.centre).hypot() - circle.radius;
+    sweep < MOST_SWEEP && samples.keep_to(from..=to, limit, off)
 }
 
 /// The samples at which a fillet between two lines starts and ends, if it explains all between them up to `to`.
@@ -132,19 +125,12 @@ fn replaced(samples: &Samples, first: Piece, last: Piece, to: usize, limit: f64)
     if start <= first.from || end == last.to || end < start + 3 {
         return None;
     }
-    let (mut sum, mut weight, mut worst) = (0.0, 0.0, 0.0_f64);
-    for k in first.to.min(start)..=to.max(end) {
-        let p = samples.points[k];
-        let off = match k {
-            _ if k < start => (p - lines[0].0).cross(lines[0].1).abs(),
-            _ if k > end => (p - lines[1].0).cross(lines[1].1).abs(),
-            _ => ((p - fillet.centre).hypot() - fillet.radius).abs(),
-        };
-        sum += samples.weights[k] * off * off;
-        weight += samples.weights[k];
-        worst = worst.max(samples.weights[k] * off);
-    }
-    let fits = sum <= limit * limit * weight && worst <= WORST * limit;
+    let off = |k: usize, p: Point| match k {
+        _ if k < start => (p - lines[0].0).cross(lines[0].1),
+        _ if k > end => (p - lines[1].0).cross(lines[1].1),
+        _ => (p - fillet.centre).hypot() - fillet.radius,
+    };
+    let fits = samples.keep_to(first.to.min(start)..=to.max(end), limit, off);
     fits.then_some([start, end])
 }
 

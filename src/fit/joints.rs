@@ -135,7 +135,7 @@ fn join_once(
         joints.push(joint);
     }
     for (k, draft) in drafts.iter().enumerate() {
-        align_tangents(draft, k, n, closed, &mut joints);
+        align_tangents(draft, k, closed, &mut joints);
     }
     round_corners(samples, &drafts, closed, &mut joints);
     drafts.iter().enumerate().map(|(k, d)| segments(samples, d, joints[k], joints[k + 1], tolerance)).collect()
@@ -228,7 +228,7 @@ fn corner(a: &Draft, b: &Draft, middle: Point, tolerance: Tolerance) -> Point {
 }
 
 /// A line's final direction is that between its joints: smooth joints take it over.
-fn align_tangents(draft: &Draft, k: usize, n: usize, closed: bool, joints: &mut [Joint]) {
+fn align_tangents(draft: &Draft, k: usize, closed: bool, joints: &mut [Joint]) {
     if draft.piece.kind != Kind::Line {
         return;
     }
@@ -238,13 +238,16 @@ fn align_tangents(draft: &Draft, k: usize, n: usize, closed: bool, joints: &mut 
     }
     let d = d.normalize();
     for j in [k, k + 1] {
-        joints[j].tangent = joints[j].tangent.map(|_| d);
+        change(joints, j, closed, |joint| joint.tangent = joint.tangent.map(|_| d));
     }
-    if closed && k == 0 {
-        joints[n].tangent = joints[n].tangent.map(|_| d);
-    }
-    if closed && k + 1 == n {
-        joints[0].tangent = joints[0].tangent.map(|_| d);
+}
+
+/// Changes a joint; the first and the last of a closed section are one.
+fn change(joints: &mut [Joint], k: usize, closed: bool, f: impl Fn(&mut Joint)) {
+    let n = joints.len() - 1;
+    f(&mut joints[k]);
+    if closed && (k == 0 || k == n) {
+        f(&mut joints[n - k]);
     }
 }
 
@@ -266,17 +269,9 @@ fn round_corners(samples: &Samples, drafts: &[Draft], closed: bool, joints: &mut
         // Each line keeps some of itself.
         let leaves = |from: Point, to: Point, d: Vec2| (to - from).dot(d) > 0.0;
         if leaves(joints[before].point, start, d) && leaves(end, joints[after + 1].point, e) {
-            set(joints, k, n, closed, start);
-            set(joints, k + 1, n, closed, end);
+            change(joints, k, closed, |joint| joint.point = start);
+            change(joints, k + 1, closed, |joint| joint.point = end);
         }
-    }
-}
-
-/// Moves a joint; the first and the last of a closed section are one.
-fn set(joints: &mut [Joint], k: usize, n: usize, closed: bool, point: Point) {
-    joints[k].point = point;
-    if closed && (k == 0 || k == n) {
-        (joints[0].point, joints[n].point) = (point, point);
     }
 }
 

@@ -21,7 +21,7 @@ mod vertices;
 
 use crate::cancel::Cancel;
 use crate::clean::unblurred_width;
-use crate::drawing::{Centreline, Drawing, Fill, Stroke};
+use crate::drawing::{Centreline, Dashes, Drawing, Fill, Stroke};
 use crate::error::Result;
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
@@ -76,10 +76,11 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
             let walk = graph.walk(trail);
             let Some(centreline) = stroke::fit_trail(&walk, trail.closed, tolerance) else { return Ok(None) };
             let centreline = rectangle::regular(centreline, tolerance);
-            let pattern = trail.dashes.filter(|_| trail.closed).map(|d| dashes::along(d, &walk, &centreline));
+            let pattern = |d: Dashes| if trail.closed { dashes::along(d, &walk, &centreline) } else { d };
+            let dashes = trail.dashes.map(pattern);
             let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(page.line_width);
             let width = unblurred_width(measured, page.blur);
-            let stroke = Stroke { centreline, width, color: trail.color, dashes: pattern.or(trail.dashes) };
+            let stroke = Stroke { centreline, width, color: trail.color, dashes };
             if !outlined || stroke.dashes.is_some() {
                 return Ok(Some(Drawn::Stroke(stroke)));
             }

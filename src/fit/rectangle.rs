@@ -1,9 +1,9 @@
 //! Upright rectangles, their corners sharp or all rounded alike, are made exact.
 
 use super::Tolerance;
-use super::fillet::{CHORDS, WORST};
+use super::fillet::CHORDS;
 use super::samples::Samples;
-use crate::drawing::{Centreline, Segment};
+use crate::drawing::{Centreline, Segment, outside_rounded};
 use kurbo::{Arc, Line, Point, Rect, RoundedRect, Vec2};
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
@@ -42,31 +42,24 @@ pub(super) fn round(samples: &Samples, tolerance: Tolerance) -> Option<Centrelin
         let [x0, y0, x1, y1, _] = sides;
         sides[4] = sides[4].clamp(0.0, 0.5 * (x1 - x0).min(y1 - y0).max(0.0));
     }
-    let (mut sum, mut weight, mut worst) = (0.0, 0.0, 0.0_f64);
-    for (p, w) in samples.points.iter().zip(&samples.weights) {
-        let off = offset(sides, *p).0;
-        (sum, weight, worst) = (sum + w * off * off, weight + w, worst.max(w * off.abs()));
-    }
     let [x0, y0, x1, y1, radius] = sides;
-    let fits = sum <= limit * limit * weight && worst <= WORST * limit && radius > tolerance.width;
-    let rect = || RoundedRect::new(x0, y0, x1, y1, radius);
-    fits.then(|| Centreline::Path { segments: segments(&rect()), closed: true })
+    let all = 0..=samples.len() - 1;
+    let fits = radius > tolerance.width && samples.keep_to(all, limit, |_, p| offset(sides, p).0);
+    fits.then(|| {
+        let rect = RoundedRect::new(x0, y0, x1, y1, radius);
+        Centreline::Path { segments: segments(&rect), closed: true }
+    })
 }
 
 /// How far a point lies outside the rectangle between `[x0, y0, x1, y1]` with corners of a radius, and how that changes
 /// with each of the five.
 fn offset([x0, y0, x1, y1, radius]: [f64; 5], p: Point) -> (f64, [f64; 5]) {
-    let middle = Point::new(0.5 * (x0 + x1), 0.5 * (y0 + y1));
-    let (dx, dy) = (p.x - middle.x, p.y - middle.y);
-    let out = Vec2::new(dx.abs() - 0.5 * (x1 - x0) + radius, dy.abs() - 0.5 * (y1 - y0) + radius);
-    let (distance, normal) = match (out.x > 0.0, out.y > 0.0) {
-        (true, true) => (out.hypot(), out.normalize()),
-        _ if out.x > out.y => (out.x, Vec2::new(1.0, 0.0)),
-        _ => (out.y, Vec2::new(0.0, 1.0)),
-    };
-    let side = |d: f64, n: f64| if d < 0.0 { (n, 0.0) } else { (0.0, -n) };
-    let ((left, right), (top, bottom)) = (side(dx, normal.x), side(dy, normal.y));
-    (distance - radius, [left, top, right, bottom, normal.x + normal.y - 1.0])
+    let rect = Rect::new(x0, y0, x1, y1);
+    let (distance, normal) = outside_rounded(rect, radius, p);
+    // Outwards is against the axis at the left and at the top.
+    let [left, right] = [(-normal.x).max(0.0), -normal.x.max(0.0)];
+    let [top, bottom] = [(-normal.y).max(0.0), -normal.y.max(0.0)];
+    (distance, [left, top, right, bottom, normal.x.abs() + normal.y.abs() - 1.0])
 }
 
 /// The edges and corners in turn, without those of no length.

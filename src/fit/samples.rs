@@ -2,9 +2,12 @@
 
 use crate::graph::TrailPoint;
 use kurbo::{Point, Vec2};
+use std::ops::RangeInclusive;
 
 /// Weight of a point inside a junction, where the ink does not tell where the line is.
 const JUNCTION_WEIGHT: f64 = 0.01;
+/// No point of a curve lies further off it than this many times what is taken for noise.
+const WORST: f64 = 3.0;
 
 /// Points along a section.
 #[derive(Clone, Debug)]
@@ -102,7 +105,8 @@ impl Samples {
         let along = chord.normalize();
         let near = || (from..=to).map(|i| (self.weights[i], self.points[i] - self.points[k]));
         let sum = |f: &dyn Fn(f64, f64) -> f64| near().map(|(w, d)| w * f(d.dot(along), along.cross(d))).sum::<f64>();
-        let mean = |f: &dyn Fn(f64, f64) -> f64| sum(f) / sum(&|_, _| 1.0);
+        let weight = sum(&|_, _| 1.0);
+        let mean = |f: &dyn Fn(f64, f64) -> f64| sum(f) / weight;
         // The normal equations of y = a + b x + c x^2, central.
         let (mx, mz, my) = (mean(&|x, _| x), mean(&|x, _| x * x), mean(&|_, y| y));
         let (xx, xz) = (mean(&|x, _| (x - mx).powi(2)), mean(&|x, _| (x - mx) * (x * x - mz)));
@@ -134,6 +138,16 @@ impl Samples {
         let median = *differences.select_nth_unstable_by(middle, f64::total_cmp).1;
         // The variance of the sum is 1 + 9 + 9 + 1 times a point's; 0.6745 is the normal law's median.
         median / (0.6745 * 20f64.sqrt())
+    }
+
+    /// Whether points `run` lie no further off a curve than a limit, root mean square, and none by [`WORST`] times as much.
+    pub fn keep_to(&self, run: RangeInclusive<usize>, limit: f64, off: impl Fn(usize, Point) -> f64) -> bool {
+        let (mut sum, mut weight, mut worst) = (0.0, 0.0, 0.0_f64);
+        for k in run {
+            let (w, off) = (self.weights[k], off(k, self.points[k]).abs());
+            (sum, weight, worst) = (sum + w * off * off, weight + w, worst.max(w * off));
+        }
+        sum <= limit * limit * weight && worst <= WORST * limit
     }
 
     /// The point that sums are taken about.

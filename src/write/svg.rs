@@ -3,7 +3,7 @@
 use super::path_data::PathData;
 use super::{Rounding, pen_order};
 use crate::drawing::{Centreline, Color, Dashes, Drawing, Fill, Segment, Stroke};
-use kurbo::{Point, RoundedRect, Shape};
+use kurbo::{Point, RoundedRect};
 use std::collections::BTreeMap;
 use svg::node::Comment;
 use svg::node::element::{Circle, Group, Line, Path, Rectangle, Title};
@@ -28,9 +28,9 @@ impl Default for SvgOptions {
 ///
 /// `viewBox` is in pixels; `width` and `height` are in millimetres where the drawing knows its DPI. Each pen
 /// colour is one Inkscape layer, lighter colours below darker ones, with its solid regions first and its
-/// strokes in [`pen_order`]. Strokes that are one line, a circle or an upright rectangle are written as such, and a dot as a
-/// path of almost no length, drawn by its round cap. Strokes and regions with a coordinate that is not
-/// finite are left out.
+/// strokes in [`pen_order`]. Strokes that are one line, a circle or an upright rectangle are written as such,
+/// and a dot as a path of almost no length, drawn by its round cap. Strokes and regions with a coordinate that
+/// is not finite are left out.
 pub fn to_svg(drawing: &Drawing, options: &SvgOptions) -> String {
     let rounding = Rounding::new(options.precision);
     let mut document = frame(drawing);
@@ -133,21 +133,16 @@ fn group(number: usize, color: Color, layer: &Layer, spare_width: f64, rounding:
         group.append(path);
     }
     for (i, reversed) in pen_order(&layer.strokes) {
-        let stroke = layer.strokes[i];
-        let width = if stroke.width.is_finite() { stroke.width } else { spare_width };
-        let width = rounding.text(width.max(rounding.step()));
         let turned;
-        let centreline = if reversed {
-            turned = stroke.centreline.reversed();
+        let stroke = if reversed {
+            turned = layer.strokes[i].reversed();
             &turned
         } else {
-            &stroke.centreline
+            layer.strokes[i]
         };
-        // A circle is written the same way around.
-        let other_way = reversed && matches!(centreline, Centreline::Path { .. });
-        let dashes =
-            stroke.dashes.map(|d| if other_way { d.reversed(centreline.to_path().perimeter(1e-3)) } else { d });
-        append(&mut group, centreline, Pen { width, dashes }, rounding);
+        let width = if stroke.width.is_finite() { stroke.width } else { spare_width };
+        let width = rounding.text(width.max(rounding.step()));
+        append(&mut group, &stroke.centreline, Pen { width, dashes: stroke.dashes }, rounding);
     }
     group
 }
