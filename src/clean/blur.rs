@@ -20,11 +20,17 @@ const FOOT: f64 = 0.15;
 const LEAST: f64 = 0.3;
 const MOST: f64 = 2.5;
 const STEP: f64 = 0.05;
+/// The deviation of most scans, and how much a square pixel off it weighs against the squares of the shape's errors:
+/// thin lines have much the same shape under any blur.
+const USUAL: f64 = 1.2;
+const LIKELY: f64 = 0.03;
+/// Of the width that a line measures, the least that it is taken to have had: below, hardly any blur is enough of one.
+const NARROWEST: f64 = 0.5;
 
 /// The standard deviation of the blur, in pixels; 0 where there are too few lines to tell.
 ///
 /// The mean profile of lines of typical width is compared with [`profile_at`]: for each deviation, the width is
-/// the one that gives the measured half-peak width, and the best shape wins.
+/// the one that gives the measured half-peak width, and the best shape wins, unusual blurs having to be the better.
 pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line_width: f64) -> f64 {
     let Some(mut mean) = mean_profile(ink, mask, depth, line_width) else { return 0.0 };
     // Grain darkens the paper a little on average.
@@ -38,8 +44,9 @@ pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line
     let misfit = |blur: f64| -> f64 {
         let width = unblurred_width(measured, blur);
         let top = profile_at(0.0, width, blur);
-        let each = mean.iter().enumerate().filter(|(_, m)| **m > FOOT * peak);
-        each.map(|(i, m)| (m / peak - profile_at(i as f64 * spacing, width, blur) / top).powi(2)).sum()
+        let off = |(i, m): (usize, &f64)| (m / peak - profile_at(i as f64 * spacing, width, blur) / top).powi(2);
+        let shape: f64 = mean.iter().enumerate().filter(|(_, m)| **m > FOOT * peak).map(off).sum();
+        shape + LIKELY * (blur - USUAL).powi(2)
     };
     let count = ((MOST - LEAST) / STEP) as usize;
     let tried = (0..=count).map(|i| LEAST + STEP * i as f64).filter(|&s| s < 0.55 * measured);
@@ -90,7 +97,7 @@ pub(crate) fn unblurred_width(measured: f64, blur: f64) -> f64 {
     let half = 0.5 * measured;
     // Too wide a line still has more than half of its peak at half the measured width.
     let too_wide = |width: f64| profile_at(half, width, blur) > 0.5 * profile_at(0.0, width, blur);
-    let (mut low, mut high) = (0.3 * measured, measured);
+    let (mut low, mut high) = (NARROWEST * measured, measured);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
         if too_wide(middle) {
