@@ -22,7 +22,7 @@ const MOST: f64 = 2.5;
 const STEP: f64 = 0.05;
 /// The deviation of most scans, and how much a square pixel off it weighs against the squares of the shape's errors:
 /// thin lines have much the same shape under any blur.
-const USUAL: f64 = 1.2;
+const USUAL: f64 = 1.12;
 const LIKELY: f64 = 0.03;
 /// Of the width that a line measures, the least that it is taken to have had: below, hardly any blur is enough of one.
 const NARROWEST: f64 = 0.5;

@@ -20,8 +20,6 @@ const STEER: f64 = 0.8;
 const TIGHTEST: f64 = 0.5;
 /// How many line widths of past single profiles tell the heading through a junction.
 const MEMORY: f64 = 6.0;
-/// How far to look for ink across a break in a noisy line, in line widths.
-const BREAK: f64 = 0.9;
 /// How near another streamline of the same direction must be to cover a point, in line widths.
 const COVERED: f64 = 0.35;
 /// How far to coast along covered ink in the hope of coming out on its other side, in line widths.
@@ -204,9 +202,7 @@ impl<'a, 'b> Walker<'a, 'b> {
         } else {
             self.image.is_inked(point - heading * WHOLE, point + heading * WHOLE, self.core.min(1.0))
         };
-        let Some(profile) = self.profile(point, normal).filter(|_| inked) else {
-            return self.across_break(here.point, heading);
-        };
+        let profile = self.profile(point, normal).filter(|_| inked)?;
         if coasting {
             return Some(Step { point, heading, width: f64::NAN, drift: 0.0 });
         }
@@ -252,26 +248,6 @@ impl<'a, 'b> Walker<'a, 'b> {
         let run = steps[..=last].iter().rev().take(memory).take_while(|s| !s.width.is_nan()).count();
         let points: Vec<Point> = steps[last + 1 - run..=last].iter().map(|s| s.point).collect();
         Tail::fit(&points, 0.1)
-    }
-
-    /// A step over a break in a noisy line, when ink of about the same direction lies ahead.
-    fn across_break(&self, from: Point, heading: Vec2) -> Option<Step> {
-        if self.image.noise == 0.0 {
-            return None;
-        }
-        let normal = heading.turn_90();
-        let reach = BREAK * self.width;
-        let mut distance = STEP;
-        while distance < reach {
-            distance += STEP;
-            let p = from + heading * distance;
-            let found = self.profile(p, normal).is_some_and(|profile| profile.is_single(self.width));
-            if found && self.frames.along(p, heading).is_some_and(|r| angle_between(heading, r).abs() < 0.5 * OWN_ROOT)
-            {
-                return Some(Step { point: from + heading * STEP, heading, width: f64::NAN, drift: 0.0 });
-            }
-        }
-        None
     }
 
     fn profile(&self, p: Point, normal: Vec2) -> Option<Profile> {
