@@ -33,6 +33,8 @@ const SHORT: f64 = 4.0;
 const WIDTHS: f64 = 1.6;
 /// Dashes are at least this many.
 const FEWEST_DASHES: usize = 4;
+/// Long and short dashes in turns are at least this many.
+const FEWEST_ALTERNATING: usize = 5;
 /// Lengths of dashes, and of the gaps between them, keep to their median but for this share and so many pixels.
 const UNEVEN: f64 = 0.25;
 const UNEVEN_PIXELS: f64 = 1.5;
@@ -71,7 +73,8 @@ pub(super) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Optio
     let short: Vec<Link> = plain.into_iter().filter(|l| l.paper <= gap && finder.is_short(l)).collect();
     let mut seams: Vec<(Link, Option<Dashes>)> = short.into_iter().map(|link| (link, None)).collect();
     if join {
-        seams.extend(dashed.into_iter().flat_map(|(links, dashes)| links.into_iter().map(move |l| (l, Some(dashes)))));
+        let joined = dashed.into_iter().filter_map(|(links, dashes)| Some((links, dashes?)));
+        seams.extend(joined.flat_map(|(links, dashes)| links.into_iter().map(move |l| (l, Some(dashes)))));
     }
     let ends = finder.ends;
     join_trails(graph, &ends, &seams);
@@ -168,57 +171,99 @@ impl<'a> Finder<'a> {
         link.ends.iter().all(|&end| length(end) > 1.5 * link.paper.max(self.image.line_width))
     }
 
-    /// Chains of dashes with their links, and the links that are between none.
-    fn dashes(&self, links: &[Link]) -> (Vec<(Vec<Link>, Dashes)>, Vec<Link>) {
+    /// Chains of dashes with their links, and the links that are between none. Long and short dashes in turns, as a centre
+    /// line has them, have no pattern that they could be joined in.
+    fn dashes(&self, links: &[Link]) -> (Vec<(Vec<Link>, Option<Dashes>)>, Vec<Link>) {
         let partner = partners(self.ends.len(), links);
         let mut dashed = Vec::new();
         let mut is_dashed = vec![false; self.ends.len()];
         for chain in chains(self.ends.len() / 2, &partner) {
-            if let Some(dashes) = self.pattern(&chain, &partner, links) {
-                let of_chain: Vec<Link> = (0..chain.len())
-                    .filter_map(|k| partner[2 * chain[k].0 + usize::from(!chain[k].1)])
-                    .map(|(_, link)| links[link])
-                    .collect();
+            let exits = chain.iter().filter_map(|&(stroke, backwards)| partner[2 * stroke + usize::from(!backwards)]);
+            let of_chain: Vec<Link> = exits.map(|(_, link)| links[link]).collect();
+            let row = self.row(&chain, &of_chain);
+            let pattern = row.pattern();
+            if pattern.is_some() || row.alternates() {
                 of_chain.iter().for_each(|l| l.ends.iter().for_each(|&e| is_dashed[e] = true));
-                dashed.push((of_chain, dashes));
+                dashed.push((of_chain, pattern));
             }
         }
         (dashed, links.iter().filter(|l| !is_dashed[l.ends[0]]).copied().collect())
     }
 
-    /// The even pattern of a chain of strokes; `None` where it is not even.
-    fn pattern(&self, chain: &[(usize, bool)], partner: &[Option<(usize, usize)>], links: &[Link]) -> Option<Dashes> {
-        let n = chain.len();
+    /// How long the strokes of a chain are, and how far apart.
+    fn row(&self, chain: &[(usize, bool)], links: &[Link]) -> Row {
+        let lengths = chain.iter().map(|&(t, _)| length(self.graph, &self.graph.trails[t])).collect();
+        let distance = |link: &Link| {
+            let [a, b] = link.ends.map(|e| self.ends[e].as_ref().map_or(Point::ZERO, |e| e.point));
+            (b - a).hypot()
+        };
+        Row { lengths, gaps: links.iter().map(distance).collect() }
+    }
+}
+
+/// The lengths of strokes in a row and of the gaps after them, in pixels; a closed row has a gap after the last.
+struct Row {
+    lengths: Vec<f64>,
+    gaps: Vec<f64>,
+}
+
+impl Row {
+    fn is_closed(&self) -> bool {
+        self.gaps.len() == self.lengths.len()
+    }
+
+    /// The even pattern of the row; `None` where it is not even.
+    fn pattern(&self) -> Option<Dashes> {
+        let Self { lengths, gaps } = self;
+        let n = lengths.len();
         if n < FEWEST_DASHES {
             return None;
         }
-        let lengths: Vec<f64> = chain.iter().map(|&(t, _)| length(self.graph, &self.graph.trails[t])).collect();
-        let exit = |k: usize| partner[2 * chain[k].0 + usize::from(!chain[k].1)];
-        let closed = exit(n - 1).is_some();
-        let distance = |link: usize| {
-            let [a, b] = links[link].ends.map(|e| self.ends[e].as_ref().map_or(Point::ZERO, |e| e.point));
-            (b - a).hypot()
-        };
-        let gaps: Vec<f64> = (0..n).filter_map(|k| exit(k).map(|(_, link)| distance(link))).collect();
-        let inner = if closed { &lengths[..] } else { &lengths[1..n - 1] };
-        let (dash, gap) = (median(inner), median(&gaps));
-        let even =
-            |values: &[f64], middle: f64| values.iter().all(|v| (v - middle).abs() <= UNEVEN * middle + UNEVEN_PIXELS);
+        let inner = if self.is_closed() { &lengths[..] } else { &lengths[1..n - 1] };
+        let (dash, gap) = (median(inner), median(gaps));
         // The pattern may begin and end within a dash.
-        let whole = lengths[0].max(lengths[n - 1]) <= dash + UNEVEN * dash + UNEVEN_PIXELS;
-        if !even(inner, dash) || !even(&gaps, gap) || !whole || dash > LONGEST_DASH * gap {
+        let whole = lengths[0].max(lengths[n - 1]) <= dash + unevenness(dash);
+        if !is_even(inner) || !is_even(gaps) || !whole || dash > LONGEST_DASH * gap {
             return None;
         }
         let to_ends: f64 = lengths[1..n - 1].iter().chain(&gaps[..n - 2]).sum();
-        let period = if closed {
+        let period = if self.is_closed() {
             (lengths.iter().sum::<f64>() + gaps.iter().sum::<f64>()) / n as f64
         } else {
             to_ends / (n - 2) as f64
         };
         let dash = dash.min(0.95 * period);
-        let offset = if closed || (dash - lengths[0]) < UNEVEN_PIXELS { 0.0 } else { dash - lengths[0] };
+        let offset = if self.is_closed() || (dash - lengths[0]) < UNEVEN_PIXELS { 0.0 } else { dash - lengths[0] };
         Some(Dashes { dash, gap: period - dash, offset })
     }
+
+    /// Whether every second stroke of an open row is of one length and the others of another, the first and the last
+    /// perhaps cut short.
+    fn alternates(&self) -> bool {
+        let n = self.lengths.len();
+        if n < FEWEST_ALTERNATING || self.is_closed() {
+            return false;
+        }
+        let every_second = |first: usize| self.lengths[first..n - 1].iter().step_by(2).copied().collect::<Vec<f64>>();
+        let (odd, even) = (every_second(1), every_second(2));
+        let of = |k: usize| median(if k % 2 == 1 { &odd } else { &even });
+        let whole = [0, n - 1].into_iter().all(|k| self.lengths[k] <= of(k) + unevenness(of(k)));
+        is_even(&odd)
+            && is_even(&even)
+            && is_even(&self.gaps)
+            && whole
+            && of(1).max(of(2)) <= LONGEST_DASH * median(&self.gaps)
+    }
+}
+
+/// How far lengths of a typical length may be from it.
+fn unevenness(typical: f64) -> f64 {
+    UNEVEN * typical + UNEVEN_PIXELS
+}
+
+fn is_even(values: &[f64]) -> bool {
+    let middle = median(values);
+    values.iter().all(|v| (v - middle).abs() <= unevenness(middle))
 }
 
 /// The end of a stroke at its start (0) or its last point (1), where it is in the open.
