@@ -15,6 +15,8 @@ const APART_PIXELS: f64 = 8.0;
 pub(super) struct Island {
     /// Left, top, right and bottom of its ink and the paper around it, in pixels.
     pub bounds: [usize; 4],
+    /// Rectangles that hold its ink and no other island's: left, top, right and bottom in pixels.
+    pub parts: Vec<[usize; 4]>,
     /// Its seeds, each with its rank among all seeds.
     pub seeds: Vec<(usize, Seed)>,
 }
@@ -35,9 +37,11 @@ pub(super) fn islands(image: &LineImage, seeds: &[Seed]) -> Vec<Island> {
     let mut islands: BTreeMap<usize, Island> = BTreeMap::new();
     for run in runs(&inked) {
         let own = [run.from.saturating_sub(1), run.y.saturating_sub(1), run.to + 1, run.y + 2].map(|cell| cell * side);
-        let island = islands.entry(run.region).or_insert(Island { bounds: own, seeds: Vec::new() });
+        let island = islands.entry(run.region).or_insert(Island { bounds: own, parts: Vec::new(), seeds: Vec::new() });
         let b = &mut island.bounds;
         *b = [b[0].min(own[0]), b[1].min(own[1]), b[2].max(own[2]), b[3].max(own[3])];
+        let (right, bottom) = ((run.to * side).min(image.ink.width()), ((run.y + 1) * side).min(image.ink.height()));
+        island.parts.push([run.from * side, run.y * side, right, bottom]);
         (run.from..run.to).for_each(|x| island_of[(x, run.y)] = run.region);
     }
     for (rank, seed) in seeds.iter().enumerate() {

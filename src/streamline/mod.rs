@@ -22,6 +22,7 @@ use coverage::Coverage;
 use islands::Island;
 use kurbo::Point;
 use rayon::prelude::*;
+use seeds::Seed;
 use walk::Walker;
 
 /// Why a walk stopped.
@@ -103,7 +104,7 @@ pub fn trace(image: &LineImage, frames: &FrameField, cancel: &Cancel) -> Result<
     Ok(streamlines.into_iter().map(|(_, streamline)| streamline).collect())
 }
 
-/// The streamlines of an island, each with its seed's rank.
+/// The streamlines of an island, each with its seed's rank; those of ink that was left over come last.
 fn trace_island(
     image: &LineImage,
     frames: &FrameField,
@@ -111,26 +112,47 @@ fn trace_island(
     ink_pixels: usize,
     cancel: &Cancel,
 ) -> Result<Vec<(usize, Streamline)>> {
-    let mut coverage = Coverage::new(image, island.bounds, ink_pixels);
-    let mut streamlines = Vec::new();
+    let coverage = Coverage::new(image, island.bounds, ink_pixels);
+    let mut tracing = Tracing { image, frames, coverage, streamlines: Vec::new() };
     for (rank, seed) in &island.seeds {
-        if coverage.is_painted(seed.point) {
-            continue;
-        }
         cancel.check()?;
-        let id = streamlines.len() as u32;
-        let before = coverage.len();
-        let mut walker = Walker::new(image, frames, &mut coverage, id);
+        tracing.sow(*rank, seed);
+    }
+    for part in &island.parts {
+        for seed in seeds::leftover(image, frames, &tracing.coverage, *part) {
+            cancel.check()?;
+            tracing.sow(usize::MAX, &seed);
+        }
+    }
+    Ok(tracing.streamlines)
+}
+
+/// An island while it is traced.
+struct Tracing<'a> {
+    image: &'a LineImage,
+    frames: &'a FrameField,
+    coverage: Coverage<'a>,
+    streamlines: Vec<(usize, Streamline)>,
+}
+
+impl Tracing<'_> {
+    /// Traces the line through a seed, unless its ink is covered.
+    fn sow(&mut self, rank: usize, seed: &Seed) {
+        let image = self.image;
+        if self.coverage.is_painted(seed.point) {
+            return;
+        }
+        let before = self.coverage.len();
+        let mut walker = Walker::new(image, self.frames, &mut self.coverage, self.streamlines.len() as u32);
         let mut streamline = walker.trace(seed);
         let width = walker.width();
         relax::relax(image, &mut streamline, width);
-        let fresh = coverage.paint(&streamline.points, &streamline.widths);
+        let fresh = self.coverage.paint(&streamline.points, &streamline.widths);
         // Less ink of its own than half a dot: a bump on another line's edge.
         if (fresh as f64) < 0.4 * image.line_width * image.line_width {
-            coverage.truncate(before);
+            self.coverage.truncate(before);
         } else {
-            streamlines.push((*rank, streamline));
+            self.streamlines.push((rank, streamline));
         }
     }
-    Ok(streamlines)
 }

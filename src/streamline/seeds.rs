@@ -1,5 +1,6 @@
 //! Where walks begin: on the ridge of the ink, where its direction is most certain.
 
+use super::coverage::Coverage;
 use crate::clean::{LineImage, is_ridge};
 use crate::field::FrameField;
 use crate::raster::runs;
@@ -15,24 +16,52 @@ pub(super) struct Seed {
 
 /// How far the ink is followed along a direction to judge it, in line widths.
 const LOOK: f64 = 4.0;
+/// Radius in line widths of the discs of ink that count as left over.
+const LEFT_OVER: f64 = 0.3;
 
-/// All seeds, most certain first: where the ink is long in one direction of the frame and short in the other.
+/// All seeds on the ridge of the ink, most certain first.
 pub(super) fn seeds(image: &LineImage, frames: &FrameField) -> Vec<Seed> {
-    let rank = |x: usize, y: usize| {
-        let point = Point::new(x as f64 + 0.5, y as f64 + 0.5);
-        let frame = frames.at_pixel(x, y)?;
-        let (along_u, along_v) = (run(image, point, frame.u), run(image, point, frame.v));
-        let tangent = if along_u >= along_v { frame.u } else { frame.v };
-        // Quantised, so that equal certainty falls back on the order of pixels.
-        Some((((along_u - along_v).abs() * 4.0).round() as i64, Seed { point, tangent }))
-    };
     let of_row = |y: usize| {
         let ridge = runs(image.mask.row(y)).flatten().filter(move |&x| is_ridge(&image.depth, x, y));
-        ridge.filter_map(move |x| rank(x, y))
+        ridge.filter_map(move |x| seed(image, frames, x, y))
     };
-    let mut ranked: Vec<(i64, Seed)> = (0..image.mask.height()).into_par_iter().flat_map_iter(of_row).collect();
-    ranked.sort_by_key(|(certainty, _)| std::cmp::Reverse(*certainty));
-    ranked.into_iter().map(|(_, seed)| seed).collect()
+    ranked((0..image.mask.height()).into_par_iter().flat_map_iter(of_row).collect())
+}
+
+/// Seeds in a part of the ink, left, top, right and bottom in pixels, where a disc of half a line width lies in ink that
+/// nothing covers yet: lines so close to others that their ridge is not their own.
+pub(super) fn leftover(image: &LineImage, frames: &FrameField, coverage: &Coverage, part: [usize; 4]) -> Vec<Seed> {
+    let [left, top, right, bottom] = part;
+    let radius = (LEFT_OVER * image.line_width).max(1.0);
+    let reach = radius.floor() as i64;
+    let left_over = |x: i64, y: i64| {
+        image.mask.get(x, y) == Some(true) && !coverage.is_painted(Point::new(x as f64 + 0.5, y as f64 + 0.5))
+    };
+    let disc = |x: usize, y: usize| {
+        let inside = |dx: i64, dy: i64| ((dx * dx + dy * dy) as f64) <= radius * radius;
+        let mut offsets = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+        offsets.all(|(dx, dy)| !inside(dx, dy) || left_over(x as i64 + dx, y as i64 + dy))
+    };
+    let of_row = |y: usize| {
+        let inked = runs(&image.mask.row(y)[left..right]).flatten().map(move |x| x + left);
+        inked.filter(move |&x| disc(x, y)).filter_map(move |x| seed(image, frames, x, y))
+    };
+    ranked((top..bottom).flat_map(of_row).collect())
+}
+
+/// A seed in the middle of a pixel and how certain it is: it is where the ink is long in one direction of the frame and
+/// short in the other. Certainty is quantised, so that equal certainty falls back on the order of pixels.
+fn seed(image: &LineImage, frames: &FrameField, x: usize, y: usize) -> Option<(i64, Seed)> {
+    let point = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+    let frame = frames.at_pixel(x, y)?;
+    let (along_u, along_v) = (run(image, point, frame.u), run(image, point, frame.v));
+    let tangent = if along_u >= along_v { frame.u } else { frame.v };
+    Some((((along_u - along_v).abs() * 4.0).round() as i64, Seed { point, tangent }))
+}
+
+fn ranked(mut seeds: Vec<(i64, Seed)>) -> Vec<Seed> {
+    seeds.sort_by_key(|(certainty, _)| std::cmp::Reverse(*certainty));
+    seeds.into_iter().map(|(_, seed)| seed).collect()
 }
 
 /// Length of ink through a point along a direction, both ways, up to [`LOOK`] each.
