@@ -10,6 +10,9 @@ use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
 
 /// At most this many samples carry a fit; more add nothing that the ink knows.
 const CARRIERS: usize = 40;
+/// As many tell the error of a curve more closely, placed by a table of the curve's length.
+const CLOSER: usize = 400;
+const TABLE: usize = 32;
 
 /// What is known about a cubic's ends.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +60,27 @@ pub(super) fn fit_cubic(samples: &Samples, from: usize, to: usize, ends: &Ends, 
         }
     }
     FittedCubic { curve, error: error * stride as f64 }
+}
+
+impl FittedCubic {
+    /// The weighted sum of squared distances over samples `from..=to`, told from more of them than carry a fit: what repeats
+    /// along a line can fall between those.
+    pub fn closer_error(&self, samples: &Samples, from: usize, to: usize) -> f64 {
+        let stride = (to - from).div_ceil(CLOSER).max(1);
+        let indices: Vec<usize> = (from..to).step_by(stride).skip(1).collect();
+        let points = (0..=TABLE).map(|i| self.curve.eval(i as f64 / TABLE as f64));
+        let along = Samples::lengths(&points.collect::<Vec<Point>>());
+        let (first, total) = (samples.arc[from], (samples.arc[to] - samples.arc[from]).max(1e-9));
+        let parameter = |&k: &usize| {
+            let wanted = along[TABLE] * (samples.arc[k] - first) / total;
+            let i = along.partition_point(|&a| a < wanted).clamp(1, TABLE);
+            let part = (wanted - along[i - 1]) / (along[i] - along[i - 1]).max(1e-12);
+            (i as f64 - 1.0 + part.clamp(0.0, 1.0)) / TABLE as f64
+        };
+        let mut parameters: Vec<f64> = indices.iter().map(parameter).collect();
+        reparametrise(samples, &indices, &mut parameters, &self.curve);
+        squared_distance(samples, &indices, &parameters, &self.curve) * stride as f64
+    }
 }
 
 fn squared_distance(samples: &Samples, indices: &[usize], parameters: &[f64], curve: &CubicBez) -> f64 {

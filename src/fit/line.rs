@@ -13,6 +13,50 @@ pub(super) struct FittedLine {
     pub error: f64,
 }
 
+/// How far off a straight edge a rasteriser may put whole stretches of it, in pixels: one that looks at four rows within a
+/// pixel draws an edge that is all but level in stairs of a quarter.
+const STAIRS: f64 = 0.135;
+/// Stairs lead from one side of the line to the other at least so often, by more than this many pixels: a bend that is as
+/// flat does not.
+const LEAST_STAIRS: usize = 3;
+const STAIR: f64 = 0.02;
+/// The running mean that tells stairs from what single points scatter by, in line widths.
+const RUNNING: f64 = 3.0;
+
+impl FittedLine {
+    /// The weighted sum of squared distances but for the stairs that the line's ink was drawn in; `None` where samples
+    /// `from..=to` show none.
+    pub fn error_beside_stairs(&self, samples: &Samples, from: usize, to: usize, width: f64) -> Option<f64> {
+        let off = |k: usize| self.direction.cross(samples.points[k] - self.point);
+        let weights = || samples.weights[from..=to].iter();
+        if self.error > 2.0 * STAIRS * STAIRS * weights().sum::<f64>() {
+            return None;
+        }
+        let mut sums = vec![(0.0, 0.0)];
+        for (k, weight) in (from..=to).zip(weights()) {
+            let (sum, total) = sums[sums.len() - 1];
+            sums.push((sum + weight * off(k), total + weight));
+        }
+        let spacing = (samples.arc[to] - samples.arc[from]) / (to - from).max(1) as f64;
+        let half = (0.5 * RUNNING * width / spacing.max(1e-9)).ceil() as usize;
+        let count = to + 1 - from;
+        let (mut error, mut side, mut changes) = (0.0, 0.0, 0);
+        for (k, weight) in weights().enumerate() {
+            let (before, after) = (sums[k.saturating_sub(half)], sums[(k + half + 1).min(count)]);
+            let mean = (after.0 - before.0) / (after.1 - before.1).max(1e-12);
+            if mean.abs() > STAIRS {
+                return None;
+            }
+            if mean.abs() > STAIR && mean.signum() != side {
+                changes += usize::from(side != 0.0);
+                side = mean.signum();
+            }
+            error += weight * (off(from + k) - mean).powi(2);
+        }
+        (changes >= LEAST_STAIRS).then_some(error)
+    }
+}
+
 /// The line with the least weighted sum of squared distances to samples `from..=to`.
 pub(super) fn fit_line(samples: &Samples, from: usize, to: usize) -> FittedLine {
     let m = samples.moments(from, to);

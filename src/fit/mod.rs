@@ -32,6 +32,9 @@ use rayon::prelude::*;
 const STEADINESS: f64 = 0.27;
 const STEADINESS_NOISY: f64 = 0.3;
 
+/// The deviation of an edge that was drawn in steps of a quarter of a pixel: `1 / (4 sqrt 12)`.
+const STAIRS: f64 = 0.072;
+
 /// How closely to fit, in pixels of the line image.
 #[derive(Clone, Copy, Debug)]
 struct Tolerance {
@@ -66,7 +69,7 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
     let fit = (options.detail * page.line_width).max(0.1);
     // Only what was scanned is blurred.
     let steadiness = if page.blur > 0.0 { STEADINESS_NOISY } else { STEADINESS } * fit;
-    let tolerance = Tolerance { fit, width: page.line_width, steadiness };
+    let tolerance = Tolerance { fit, width: page.line_width, steadiness: steadiness.max(STAIRS) };
     let outlined = options.width == StrokeWidth::Outline;
     let fitted: Vec<Option<Drawn>> = graph
         .trails

@@ -60,10 +60,7 @@ impl Moments {
 
 impl Samples {
     pub fn new(points: Vec<Point>, weights: Vec<f64>) -> Self {
-        let mut arc = vec![0.0; points.len()];
-        for k in 1..points.len() {
-            arc[k] = arc[k - 1] + (points[k] - points[k - 1]).hypot();
-        }
+        let arc = Self::lengths(&points);
         let total = points.iter().fold(Vec2::ZERO, |s, p| s + p.to_vec2());
         let centre = (total / points.len().max(1) as f64).to_point();
         let mut sums = vec![Moments::default(); points.len() + 1];
@@ -71,6 +68,15 @@ impl Samples {
             sums[k + 1] = sums[k].each(Moments::of(points[k] - centre, weights[k]), |a, b| a + b);
         }
         Self { points, weights, arc, centre, sums }
+    }
+
+    /// Length of the way up to each of some points.
+    pub fn lengths(points: &[Point]) -> Vec<f64> {
+        let mut arc = vec![0.0; points.len()];
+        for k in 1..points.len() {
+            arc[k] = arc[k - 1] + (points[k] - points[k - 1]).hypot();
+        }
+        arc
     }
 
     /// Samples from points of a trail.

@@ -99,7 +99,13 @@ fn cheapest(
     // Neighbouring points share ink: about one in a line width is independent.
     let independent = (samples.length() / samples.len() as f64 / tolerance.width).min(1.0);
     let price = |base: f64, error: f64| base + error * independent / (deviation * deviation);
-    let line = price(LINE, fit_line(samples, from, to).error);
+    let fitted = fit_line(samples, from, to);
+    let mut line = price(LINE, fitted.error);
+    if line > ARC
+        && let Some(error) = fitted.error_beside_stairs(samples, from, to, tolerance.width)
+    {
+        line = line.min(price(LINE, error));
+    }
     let mut cheapest = (line, Kind::Line);
     if line <= ARC {
         return cheapest;
@@ -116,7 +122,12 @@ fn cheapest(
         return cheapest;
     }
     let ends = Ends { start: near(samples, from), end: near(samples, to), start_tangent: None, end_tangent: None };
-    let cubic = price(CUBIC, fit_cubic(samples, from, to, &ends, 2).error);
+    let fitted = fit_cubic(samples, from, to, &ends, 2);
+    let cubic = price(CUBIC, fitted.error);
+    if cubic >= cheapest.0 {
+        return cheapest;
+    }
+    let cubic = cubic.max(price(CUBIC, fitted.closer_error(samples, from, to)));
     if cubic < cheapest.0 { (cubic, Kind::Cubic) } else { cheapest }
 }
 
