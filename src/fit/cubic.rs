@@ -11,7 +11,7 @@ use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
 /// At most this many samples carry a fit; more add nothing that the ink knows.
 const CARRIERS: usize = 40;
 /// As many tell the error of a curve more closely, placed by a table of the curve's length.
-const CLOSER: usize = 400;
+const CLOSER: usize = 160;
 const TABLE: usize = 32;
 
 /// What is known about a cubic's ends.
@@ -66,6 +66,9 @@ impl FittedCubic {
     /// The weighted sum of squared distances over samples `from..=to`, told from more of them than carry a fit: what repeats
     /// along a line can fall between those.
     pub fn closer_error(&self, samples: &Samples, from: usize, to: usize) -> f64 {
+        if to - from <= 2 * CARRIERS {
+            return self.error;
+        }
         let stride = (to - from).div_ceil(CLOSER).max(1);
         let indices: Vec<usize> = (from..to).step_by(stride).skip(1).collect();
         let points = (0..=TABLE).map(|i| self.curve.eval(i as f64 / TABLE as f64));
