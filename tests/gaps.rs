@@ -153,6 +153,43 @@ fn dashes_on_paper_are_not_breaks() {
 }
 
 #[test]
+fn dashes_with_a_line_width_of_paper_between_them_are_not_breaks() {
+    let cases = pairs(&pairs(&steps(0.0, 160.0, 20.0), &[3.0, 4.0]), &[(6.0, 2.0), (4.0, 2.0)]);
+    sweep("narrow gaps between dashes", 1.0, &cases, |&((angle, width), (dash, gap))| {
+        let truth = page(vec![dashed(angle, width, Dashes { dash: dash * width, gap: gap * width, offset: 0.0 })]);
+        let paper = scan_of(Paper::INK.scan(&rendered(&truth).gray, angle as u64));
+        let count = (140.0 / ((dash + gap) * width)).ceil() as usize;
+        let kept = traced(&paper, None, Dashing::Keep).strokes.len();
+        ensure(kept.abs_diff(count) <= 1, || format!("{kept} of {count} dashes"))
+    });
+}
+
+#[test]
+fn long_and_short_dashes_in_turns_are_not_breaks() {
+    // Lengths of a long dash, a short one and the paper between them, in line widths.
+    let cases = pairs(&pairs(&steps(0.0, 160.0, 20.0), &[3.0, 4.0]), &[(7.0, 1.5, 1.2), (9.0, 2.0, 1.4)]);
+    sweep("centre lines on paper", 1.0, &cases, |&((angle, width), (long, short, paper))| {
+        let (mut strokes, mut at) = (Vec::new(), -70f64);
+        while at < 70.0 {
+            for dash in [long, short] {
+                let end = (at + dash * width).min(70.0);
+                if end - at > width {
+                    strokes.push(line(polar(CENTER, angle, at), polar(CENTER, angle, end), width));
+                }
+                at = end + (paper + 1.0) * width;
+            }
+        }
+        let truth = page(strokes);
+        let scan = scan_of(Paper::INK.scan(&rendered(&truth).gray, angle as u64));
+        for dashes in [Dashing::Keep, Dashing::Join] {
+            let kept = traced(&scan, None, dashes).strokes.len();
+            ensure(kept == truth.strokes.len(), || format!("{kept} of {} dashes, {dashes:?}", truth.strokes.len()))?;
+        }
+        Ok(())
+    });
+}
+
+#[test]
 fn a_dashed_circle_is_one_closed_stroke() {
     sweep("dashed circles", 1.0, &pairs(&steps(0.0, 80.0, 20.0), &[10, 16]), |&(angle, count)| {
         let (radius, width) = (50.0, 3.0);

@@ -7,7 +7,7 @@
 mod common;
 
 use common::compare::{apart, bow, lines, straight_pieces};
-use common::draw::{SPECKLESS, circle, line, on_paper, polar, polyline, sheet};
+use common::draw::{SPECKLESS, circle, line, on_paper, polar, polyline, rendered, sheet};
 use common::figures::{figures, figures_on, like_stroke, nearest, nearest_end, same_length, same_strokes, straight};
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Fill, Segment, Stroke};
@@ -148,37 +148,48 @@ fn hatching_in_a_frame_ends_on_the_frame() {
     });
 }
 
+/// A shaft with an open head at its end: half its opening in degrees, its size in line widths.
+fn open_arrow((((opening, size), width), turn): (((f64, f64), f64), f64)) -> Drawing {
+    let tip = polar(CENTER, turn, 46.0);
+    let barb = |side: f64| polar(tip, turn + 180.0 + side * opening, size * width);
+    page(vec![line(polar(CENTER, turn, -50.0), tip, width), polyline(&[barb(-1.0), tip, barb(1.0)], false, width)])
+}
+
+/// The shaft is straight, the head is there, and ends are within so many pixels of where they were drawn.
+fn is_open_arrow(width: f64, truth: &Drawing, traced: &Drawing, tolerance: f64) -> Result<(), String> {
+    let tip = truth.strokes[0].centreline.end();
+    let shaft = like_stroke(&truth.strokes[0], traced, 0.5 * width + 0.5)?;
+    let bowed = bow(&shaft.centreline);
+    ensure(bowed <= 0.6, || format!("the shaft bows by {bowed:.2}"))?;
+    // The head is one stroke or two.
+    ensure((2..=3).contains(&traced.strokes.len()), || format!("{} strokes", traced.strokes.len()))?;
+    let head = &truth.strokes[1].centreline;
+    let free = [truth.strokes[0].centreline.start(), head.start(), head.end()];
+    let off = free.iter().map(|p| nearest_end(*p, traced)).fold(0.0, f64::max);
+    ensure(off <= tolerance, || format!("an end is off by {off:.2}"))?;
+    let apart = apart(&lines(truth), &lines(traced));
+    ensure(apart.max <= 0.5 * width + 0.5, || format!("{apart:.3?}"))?;
+    let off = nearest_end(tip, traced);
+    ensure(off <= 0.5 * width + 0.5, || format!("the nearest end to the tip is {off:.2} from it"))
+}
+
 #[test]
 fn an_open_arrow_head_is_a_corner_at_the_end_of_a_shaft() {
     let cases = pairs(&pairs(&pairs(&[15.0, 20.0, 30.0, 45.0], &[5.0, 8.0]), &WIDTHS), &[0.0, 17.0, 90.0, 225.0]);
-    figures(
-        "open arrow heads",
-        0.82,
+    let rule = |&((_, width), _): &_, truth: &_, traced: &_| is_open_arrow(width, truth, traced, 0.75);
+    figures("open arrow heads", 0.82, &cases, |case| open_arrow(*case), rule);
+}
+
+#[test]
+fn an_open_arrow_head_in_pencil_is_a_corner_at_the_end_of_a_shaft() {
+    let cases = pairs(&pairs(&pairs(&[20.0, 30.0, 45.0], &[5.0, 8.0]), &WIDTHS[1..]), &[0.0, 17.0, 90.0, 225.0]);
+    figures_on(
+        "open arrow heads in pencil",
+        0.0,
         &cases,
-        |&(((opening, size), width), turn)| {
-            let tip = polar(CENTER, turn, 46.0);
-            let barb = |side: f64| polar(tip, turn + 180.0 + side * opening, size * width);
-            page(vec![
-                line(polar(CENTER, turn, -50.0), tip, width),
-                polyline(&[barb(-1.0), tip, barb(1.0)], false, width),
-            ])
-        },
-        |&((_, width), _), truth, traced| {
-            let tip = truth.strokes[0].centreline.end();
-            let shaft = like_stroke(&truth.strokes[0], traced, 0.5 * width + 0.5)?;
-            let bowed = bow(&shaft.centreline);
-            ensure(bowed <= 0.6, || format!("the shaft bows by {bowed:.2}"))?;
-            // The head is one stroke or two.
-            ensure((2..=3).contains(&traced.strokes.len()), || format!("{} strokes", traced.strokes.len()))?;
-            let head = &truth.strokes[1].centreline;
-            let free = [truth.strokes[0].centreline.start(), head.start(), head.end()];
-            let off = free.iter().map(|p| nearest_end(*p, traced)).fold(0.0, f64::max);
-            ensure(off <= 0.75, || format!("an end is off by {off:.2}"))?;
-            let apart = apart(&lines(truth), &lines(traced));
-            ensure(apart.max <= 0.5 * width + 0.5, || format!("{apart:.3?}"))?;
-            let off = nearest_end(tip, traced);
-            ensure(off <= 0.5 * width + 0.5, || format!("the nearest end to the tip is {off:.2} from it"))
-        },
+        |case| open_arrow(*case),
+        |&((_, width), turn), drawing| pencil(drawing, width + turn),
+        |&((_, width), _), truth, traced| is_open_arrow(width, truth, traced, 1.25),
     );
 }
 
@@ -356,6 +367,31 @@ fn a_long_pencil_line_does_not_wobble() {
             same_strokes(truth, traced, 0.75)?;
             let body = common::compare::body_apart(truth, traced, 2.0);
             ensure(body.mean <= 0.15, || format!("{body:.3?}"))
+        },
+    );
+}
+
+#[test]
+fn a_line_that_is_all_but_level_is_one_line() {
+    // What looks at four rows of a pixel draws such lines in stairs.
+    let slopes = [0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0];
+    let cases = pairs(&pairs(&slopes, &[0.0, 90.0]), &[2.0, 2.5, 3.0, 4.0, 6.0]);
+    figures_on(
+        "lines all but level",
+        1.0,
+        &cases,
+        |&((slope, turn), width)| {
+            let (center, angle) = (Point::new(150.0, 150.2), slope + turn);
+            sheet(300, 300, vec![line(polar(center, angle, -138.0), polar(center, angle, 138.0), width)])
+        },
+        |_, drawing| rendered(drawing),
+        |&(_, width), truth, traced| {
+            same_strokes(truth, traced, 0.1 * width + 0.5)?;
+            let pieces = straight_pieces(&traced.strokes[0].centreline);
+            ensure(pieces == Some(1), || format!("{pieces:?} straight pieces"))?;
+            let body = common::compare::body_apart(truth, traced, 2.0);
+            // A line this near to an axis may be put on it.
+            ensure(body.max <= 0.3f64.max(0.1 * width), || format!("{body:.3?}"))
         },
     );
 }

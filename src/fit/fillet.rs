@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.08 };
+    const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.08, pixel: 1.0 };
 
     /// Two lines that turn by an angle with an arc of a radius between them, points half a pixel apart, each off the
     /// course by up to `noise` as if rasterised; and where the arc starts and ends, as numbers of points.

@@ -1,5 +1,6 @@
 //! Straight lines by total least squares.
 
+use super::Tolerance;
 use super::samples::Samples;
 use kurbo::{Point, Vec2};
 
@@ -13,11 +14,14 @@ pub(super) struct FittedLine {
     pub error: f64,
 }
 
-/// How far off a straight edge a rasteriser may put whole stretches of it, in pixels: one that looks at four rows within a
-/// pixel draws an edge that is all but level in stairs of a quarter.
+/// How far off a straight edge a rasteriser may put whole stretches of it, in pixels of the scan: one that looks at four
+/// rows within a pixel draws an edge that is all but level in stairs of a quarter.
 const STAIRS: f64 = 0.135;
-/// Stairs lead from one side of the line to the other at least so often, by more than this many pixels: a bend that is as
-/// flat does not.
+/// The same for lines that are thinner than this: few of their pixels are full of ink, and tell less of where it is.
+const STAIRS_THIN: f64 = 0.2;
+const THIN: f64 = 2.75;
+/// Stairs lead from one side of the line to the other at least so often, by more than this many pixels of the scan: a bend
+/// that is as flat does not.
 const LEAST_STAIRS: usize = 3;
 const STAIR: f64 = 0.02;
 /// The running mean that tells stairs from what single points scatter by, in line widths.
@@ -26,10 +30,12 @@ const RUNNING: f64 = 3.0;
 impl FittedLine {
     /// The weighted sum of squared distances but for the stairs that the line's ink was drawn in; `None` where samples
     /// `from..=to` show none.
-    pub fn error_beside_stairs(&self, samples: &Samples, from: usize, to: usize, width: f64) -> Option<f64> {
+    pub fn error_beside_stairs(&self, samples: &Samples, from: usize, to: usize, tolerance: Tolerance) -> Option<f64> {
         let off = |k: usize| self.direction.cross(samples.points[k] - self.point);
         let weights = || samples.weights[from..=to].iter();
-        if self.error > 2.0 * STAIRS * STAIRS * weights().sum::<f64>() {
+        let Tolerance { width, pixel, .. } = tolerance;
+        let stairs = pixel * if width < THIN * pixel { STAIRS_THIN } else { STAIRS };
+        if self.error > stairs * stairs * weights().sum::<f64>() {
             return None;
         }
         let mut sums = vec![(0.0, 0.0)];
@@ -44,10 +50,10 @@ impl FittedLine {
         for (k, weight) in weights().enumerate() {
             let (before, after) = (sums[k.saturating_sub(half)], sums[(k + half + 1).min(count)]);
             let mean = (after.0 - before.0) / (after.1 - before.1).max(1e-12);
-            if mean.abs() > STAIRS {
+            if mean.abs() > stairs {
                 return None;
             }
-            if mean.abs() > STAIR && mean.signum() != side {
+            if mean.abs() > STAIR * pixel && mean.signum() != side {
                 changes += usize::from(side != 0.0);
                 side = mean.signum();
             }

@@ -32,7 +32,7 @@ use rayon::prelude::*;
 const STEADINESS: f64 = 0.27;
 const STEADINESS_NOISY: f64 = 0.3;
 
-/// The deviation of an edge that was drawn in steps of a quarter of a pixel: `1 / (4 sqrt 12)`.
+/// The deviation of an edge that was drawn in steps of a quarter of a pixel of the scan: `1 / (4 sqrt 12)`.
 const STAIRS: f64 = 0.072;
 
 /// How closely to fit, in pixels of the line image.
@@ -44,6 +44,8 @@ struct Tolerance {
     width: f64,
     /// Deviation below which points always agree with a curve.
     steadiness: f64,
+    /// Side of a pixel of the scan.
+    pixel: f64,
 }
 
 impl Tolerance {
@@ -69,7 +71,8 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
     let fit = (options.detail * page.line_width).max(0.1);
     // Only what was scanned is blurred.
     let steadiness = if page.blur > 0.0 { STEADINESS_NOISY } else { STEADINESS } * fit;
-    let tolerance = Tolerance { fit, width: page.line_width, steadiness: steadiness.max(STAIRS) };
+    let tolerance =
+        Tolerance { fit, width: page.line_width, steadiness: steadiness.max(STAIRS * page.scale), pixel: page.scale };
     let outlined = options.width == StrokeWidth::Outline;
     let fitted: Vec<Option<Drawn>> = graph
         .trails

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.1 };
+    const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.1, pixel: 1.0 };
 
     #[test]
     fn a_rectangle_with_uneven_corners_becomes_regular_from_any_start() {

@@ -102,7 +102,7 @@ fn cheapest(
     let fitted = fit_line(samples, from, to);
     let mut line = price(LINE, fitted.error);
     if line > ARC
-        && let Some(error) = fitted.error_beside_stairs(samples, from, to, tolerance.width)
+        && let Some(error) = fitted.error_beside_stairs(samples, from, to, tolerance)
     {
         line = line.min(price(LINE, error));
     }

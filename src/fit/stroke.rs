@@ -225,7 +225,7 @@ mod tests {
             let mut walk: Vec<TrailPoint> = (0..80).map(|k| point(0.5 * f64::from(k), 0.0, false)).collect();
             walk.push(point(42.0, aside, true));
             walk.extend((0..100).map(|k| point(52.0, 10.0 + 0.5 * f64::from(k), false)));
-            let tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.15 };
+            let tolerance = Tolerance { fit: 0.3, width: 3.0, steadiness: 0.15, pixel: 1.0 };
             let Some(Centreline::Path { segments, .. }) = fit_trail(&walk, false, tolerance) else { panic!("no line") };
             // Beside the node itself anything goes.
             for p in walk.iter().map(|p| p.point).filter(|p| p.x < 36.0 || p.y > 16.0) {

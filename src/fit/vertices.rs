@@ -134,7 +134,7 @@ mod tests {
     use crate::drawing::Color;
     use kurbo::Line;
 
-    const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 4.0, steadiness: 0.1 };
+    const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 4.0, steadiness: 0.1, pixel: 1.0 };
 
     fn chain(points: &[(f64, f64)]) -> Stroke {
         let lines = points.windows(2).map(|p| Segment::Line(Line::new(p[0], p[1])));
