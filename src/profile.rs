@@ -38,15 +38,15 @@ impl Profile {
 
     /// Whether the profile is that of one line of about the given width.
     pub fn is_single(&self, width: f64) -> bool {
-        self.width().is_some_and(|w| w < 1.3 * width + 0.35 && w > 0.5 * width - 0.35)
+        self.width().is_some_and(|w| w < widest(width) && w > 0.5 * width - 0.35)
     }
 
     /// How far to move along the normal to sit in the middle of a line of the given width.
     ///
-    /// Where two lines run into one another only the outer edge belongs to this line: it alone is used when it
-    /// lies about where it should. `None` where neither edge says anything.
+    /// Both edges of ink that is no wider are its own. Where two lines run into one another only the outer edge belongs to
+    /// this line: it alone is used when it lies about where it should. `None` where neither edge says anything.
     pub fn shift(&self, width: f64) -> Option<f64> {
-        if self.is_single(width) {
+        if self.width().is_some_and(|w| w < widest(width)) {
             return self.middle();
         }
         let nearest = match (self.shift_by_left(width), self.shift_by_right(width)) {
@@ -65,6 +65,11 @@ impl Profile {
     pub fn shift_by_right(&self, width: f64) -> Option<f64> {
         self.right.map(|right| right - 0.5 * width)
     }
+}
+
+/// The widest that one line of about a width may seem.
+fn widest(width: f64) -> f64 {
+    1.3 * width + 0.35
 }
 
 /// Measures the ink across a line through `p` with unit normal `normal`, up to `reach` to both sides.
@@ -178,6 +183,14 @@ mod tests {
                 assert!((profile.width().unwrap() - width).abs() < 0.03, "{width} {phase}: {profile:?}");
                 assert!((profile.middle().unwrap() - phase + 0.2).abs() < 0.03, "{width} {phase}: {profile:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_line_far_thinner_than_its_pen_is_found_in_its_middle() {
+        for offset in [-0.6, 0.0, 0.4] {
+            let profile = Profile { left: Some(1.1 + offset), right: Some(1.1 - offset) };
+            assert_eq!(profile.shift(5.0), profile.middle(), "{offset}");
         }
     }
 

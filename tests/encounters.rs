@@ -64,7 +64,7 @@ fn a_crossing_beside_a_crossing_is_three_straight_strokes() {
     let cases = pairs(&pairs(&pairs(&apart, &slants), &WIDTHS[..4]), &TURNS);
     figures(
         "twin crossings",
-        0.895,
+        0.9,
         &cases,
         |&(((apart, slants), width), turn)| {
             let at = |side: f64| polar(CENTER, turn, side * 0.5 * apart * width);
@@ -327,7 +327,7 @@ fn an_arc_that_leaves_a_line_is_a_branch_of_it() {
     let cases = pairs(&pairs(&[40.0, 70.0, 120.0], &WIDTHS), &[0.0, 17.0, 45.0, 100.0]);
     figures(
         "tangential merges",
-        0.833,
+        0.866,
         &cases,
         |&((radius, width), turn)| {
             let center = polar(CENTER, turn, -10.0);

@@ -52,7 +52,7 @@ const TAPERS: [(f64, f64); 4] = [(2.0, 7.0), (3.0, 6.0), (8.0, 4.0), (5.0, 5.0)]
 #[test]
 fn a_taper_is_kept_with_few_pieces() {
     let cases = pairs(&pairs(&steps(0.0, 330.0, 30.0), &TAPERS), &[0.0, 50.0]);
-    sweep("tapers", 0.968, &cases, |&((angle, widths), bend)| {
+    sweep("tapers", 0.989, &cases, |&((angle, widths), bend)| {
         let truth = brush(angle, widths, bend);
         let result = traced(&rendered(&truth), StrokeWidth::Outline);
         ensure(result.strokes.is_empty() && result.fills.len() == 1, || {

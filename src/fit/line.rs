@@ -17,9 +17,11 @@ pub(super) struct FittedLine {
 /// How far off a straight edge a rasteriser may put whole stretches of it, in pixels of the scan: one that looks at four
 /// rows within a pixel draws an edge that is all but level in stairs of a quarter.
 const STAIRS: f64 = 0.135;
-/// The same for lines that are thinner than this: few of their pixels are full of ink, and tell less of where it is.
+/// The same for lines that are thinner than this and at less than this sine to an axis (6 degrees): few of their pixels are
+/// full of ink, and tell less of where it is.
 const STAIRS_THIN: f64 = 0.2;
 const THIN: f64 = 2.75;
+const LEVEL: f64 = 0.1;
 /// Stairs lead from one side of the line to the other at least so often, by more than this many pixels of the scan: a bend
 /// that is as flat does not.
 const LEAST_STAIRS: usize = 3;
@@ -34,7 +36,8 @@ impl FittedLine {
         let off = |k: usize| self.direction.cross(samples.points[k] - self.point);
         let weights = || samples.weights[from..=to].iter();
         let Tolerance { width, pixel, .. } = tolerance;
-        let stairs = pixel * if width < THIN * pixel { STAIRS_THIN } else { STAIRS };
+        let is_level = self.direction.x.abs().min(self.direction.y.abs()) < LEVEL;
+        let stairs = pixel * if is_level && width < THIN * pixel { STAIRS_THIN } else { STAIRS };
         if self.error > stairs * stairs * weights().sum::<f64>() {
             return None;
         }

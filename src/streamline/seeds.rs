@@ -18,6 +18,10 @@ pub(super) struct Seed {
 const LOOK: f64 = 4.0;
 /// Radius in line widths of the discs of ink that count as left over.
 const LEFT_OVER: f64 = 0.3;
+/// Within so many line widths of a line, in nearly its direction (10 degrees) and with so much ink between, lies its flank.
+const BESIDE: f64 = 1.5;
+const PARALLEL_COS: f64 = 0.985;
+const SOLID: f32 = 0.75;
 
 /// All seeds on the ridge of the ink, most certain first.
 pub(super) fn seeds(image: &LineImage, frames: &FrameField) -> Vec<Seed> {
@@ -42,9 +46,19 @@ pub(super) fn leftover(image: &LineImage, frames: &FrameField, coverage: &Covera
         let mut offsets = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
         offsets.all(|(dx, dy)| !inside(dx, dy) || left_over(x as i64 + dx, y as i64 + dy))
     };
+    // Ink that leads to a line of the same direction without a break is that line's, however wide.
+    let is_flank = |seed: &Seed| {
+        let near = BESIDE * image.line_width;
+        let line = coverage
+            .nearest(seed.point, seed.tangent, near, |mark| mark.heading.dot(seed.tangent).abs() > PARALLEL_COS);
+        line.is_some_and(|mark| {
+            (1..8).all(|k| image.ink.sample(seed.point.lerp(mark.point, f64::from(k) / 8.0)) > SOLID)
+        })
+    };
     let of_row = |y: usize| {
         let inked = runs(&image.mask.row(y)[left..right]).flatten().map(move |x| x + left);
-        inked.filter(move |&x| disc(x, y)).filter_map(move |x| seed(image, frames, x, y))
+        let seeds = inked.filter(move |&x| disc(x, y)).filter_map(move |x| seed(image, frames, x, y));
+        seeds.filter(move |(_, seed)| !is_flank(seed))
     };
     ranked((top..bottom).flat_map(of_row).collect())
 }

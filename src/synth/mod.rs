@@ -36,7 +36,7 @@ impl Style {
         let width = if rng.random_bool(0.8) { within(rng, 2.0, 5.0) } else { (within(rng, 0.0, 12f64.ln())).exp() };
         let mix = if rng.random_bool(0.6) { 0.0 } else { 0.35 };
         let scale = if rng.random_bool(0.3) { 1.0 } else { within(rng, 0.0, 5f64.ln()).exp() };
-        let freehand = rng.random_bool(0.35);
+        let freehand = rng.random_bool(0.25);
         let width = if freehand { within(rng, 1.0, 3.5) } else { width };
         Self { width, mix, scale, freehand }
     }

@@ -97,8 +97,8 @@ pub(super) fn polyline(rng: &mut impl Rng, start: Point, angle: f64, scale: f64)
     open(segments)
 }
 
-/// A stroke as a hand draws it: bends that change as it goes, here and there a sharp turn, at a point or around a tight
-/// bend, and straight pieces of a few pixels between the points that were recorded.
+/// A stroke as a hand draws it: bends that change as it goes, here and there a sharp turn, and straight pieces of a few
+/// pixels between the points that were recorded.
 pub(super) fn freehand(rng: &mut impl Rng, start: Point, angle: f64, scale: f64) -> Centreline {
     let step = within(rng, 1.5, 6.0);
     let length = scale * within(rng, 0.5, 3.0);
@@ -107,23 +107,14 @@ pub(super) fn freehand(rng: &mut impl Rng, start: Point, angle: f64, scale: f64)
     let slow = within(rng, 6.0, 0.5 * scale + 8.0);
     let tremor = if rng.random_bool(0.5) { 0.0 } else { within(rng, 0.0, 0.12) };
     let (mut p, mut angle, mut bend, mut segments) = (start, angle, 0.0, Vec::new());
-    let mut go = |angle: f64, length: f64| {
-        let next = p + length * Vec2::from_angle(angle);
+    for _ in 0..(length / step).ceil() as usize {
+        let next = p + step * within(rng, 0.7, 1.3) * Vec2::from_angle(angle + tremor * gaussian(rng));
         segments.push(Segment::Line(Line::new(p, next)));
         p = next;
-    };
-    for _ in 0..(length / step).ceil() as usize {
-        go(angle + tremor * gaussian(rng), step * within(rng, 0.7, 1.3));
         bend += (step / slow) * (4.0 * gaussian(rng) / slow - bend);
         angle += bend * step;
         if rng.random_bool((step / sharp).min(1.0)) {
-            let turn = within(rng, 0.7, 2.9) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
-            let points = rng.random_range(1..5);
-            for _ in 1..points {
-                angle += turn / f64::from(points);
-                go(angle, within(rng, 0.8, 2.8));
-            }
-            angle += turn / f64::from(points);
+            angle += within(rng, 0.7, 2.9) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
             bend = 0.0;
         }
     }
