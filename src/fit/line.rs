@@ -12,6 +12,8 @@ pub(super) struct FittedLine {
     pub direction: Vec2,
     /// Weighted sum of squared distances.
     pub error: f64,
+    /// Sum of the weights.
+    weight: f64,
 }
 
 /// How far off a straight edge a rasteriser may put whole stretches of it, in pixels of the scan: one that looks at four
@@ -33,15 +35,16 @@ impl FittedLine {
     /// The weighted sum of squared distances but for the stairs that the line's ink was drawn in; `None` where samples
     /// `from..=to` show none.
     pub fn error_beside_stairs(&self, samples: &Samples, from: usize, to: usize, tolerance: Tolerance) -> Option<f64> {
-        let off = |k: usize| self.direction.cross(samples.points[k] - self.point);
-        let weights = || samples.weights[from..=to].iter();
         let Tolerance { width, pixel, .. } = tolerance;
         let is_level = self.direction.x.abs().min(self.direction.y.abs()) < LEVEL;
         let stairs = pixel * if is_level && width < THIN * pixel { STAIRS_THIN } else { STAIRS };
-        if self.error > stairs * stairs * weights().sum::<f64>() {
+        if self.error > stairs * stairs * self.weight {
             return None;
         }
-        let mut sums = vec![(0.0, 0.0)];
+        let off = |k: usize| self.direction.cross(samples.points[k] - self.point);
+        let weights = || samples.weights[from..=to].iter();
+        let mut sums = Vec::with_capacity(to + 2 - from);
+        sums.push((0.0, 0.0));
         for (k, weight) in (from..=to).zip(weights()) {
             let (sum, total) = sums[sums.len() - 1];
             sums.push((sum + weight * off(k), total + weight));
@@ -76,5 +79,5 @@ pub(super) fn fit_line(samples: &Samples, from: usize, to: usize) -> FittedLine 
     let chord = samples.points[to] - samples.points[from];
     let direction = Vec2::from_angle(angle);
     let direction = if direction.dot(chord) < 0.0 { -direction } else { direction };
-    FittedLine { point: samples.centre() + mean, direction, error: (0.5 * (a + c) - spread).max(0.0) }
+    FittedLine { point: samples.centre() + mean, direction, error: (0.5 * (a + c) - spread).max(0.0), weight: m.w }
 }

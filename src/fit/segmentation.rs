@@ -17,6 +17,8 @@ const ARC: f64 = 5.5;
 const CUBIC: f64 = 8.0;
 /// A piece that is this much worse than its price is given up, and longer ones from the same knot with it.
 const HOPELESS: f64 = 60.0;
+/// A cubic that costs less than a line by no more than this is looked at more closely.
+const DOUBTFUL: f64 = 30.0;
 /// The most knots that a section is given.
 const MOST_KNOTS: f64 = 140.0;
 
@@ -127,7 +129,9 @@ fn cheapest(
     if cubic >= cheapest.0 {
         return cheapest;
     }
-    let cubic = cubic.max(price(CUBIC, fitted.closer_error(samples, from, to)));
+    // What repeats along a line must not make it a curve.
+    let closely = line < cubic + DOUBTFUL;
+    let cubic = if closely { cubic.max(price(CUBIC, fitted.closer_error(samples, from, to))) } else { cubic };
     if cubic < cheapest.0 { (cubic, Kind::Cubic) } else { cheapest }
 }
 
