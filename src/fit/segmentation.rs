@@ -18,7 +18,7 @@ const CUBIC: f64 = 8.0;
 /// A piece that is this much worse than its price is given up, and longer ones from the same knot with it.
 const HOPELESS: f64 = 60.0;
 /// A cubic that costs less than a line by no more than this is looked at more closely.
-const DOUBTFUL: f64 = 30.0;
+const DOUBTFUL: f64 = 80.0;
 /// The most knots that a section is given.
 const MOST_KNOTS: f64 = 140.0;
 
