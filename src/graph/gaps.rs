@@ -60,6 +60,9 @@ struct Link {
     misfit: f64,
 }
 
+/// The links of a chain of dashes, and the pattern that it can be joined in.
+type Dashed = (Vec<Link>, Option<Dashes>);
+
 /// Bridges gaps and finds dashes, as the options ask.
 pub(super) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Options) {
     let gap = options.gap.unwrap_or(if image.noise > LEAST_GRAIN { SCAN_GAP } else { 0.0 }) * image.line_width;
@@ -173,7 +176,7 @@ impl<'a> Finder<'a> {
 
     /// Chains of dashes with their links, and the links that are between none. Long and short dashes in turns, as a centre
     /// line has them, have no pattern that they could be joined in.
-    fn dashes(&self, links: &[Link]) -> (Vec<(Vec<Link>, Option<Dashes>)>, Vec<Link>) {
+    fn dashes(&self, links: &[Link]) -> (Vec<Dashed>, Vec<Link>) {
         let partner = partners(self.ends.len(), links);
         let mut dashed = Vec::new();
         let mut is_dashed = vec![false; self.ends.len()];
