@@ -3,7 +3,8 @@
 //! Direction comes from the field, position from the ink: a walk follows the root nearest to its heading and is
 //! pulled back to the middle of the ink at each step, except inside junctions, where the cross profile says
 //! nothing about the line that is being followed. A streamline covers ink for its own direction only, so others
-//! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own).
+//! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own). Ink that no
+//! streamline covers in the end gets seeds of its own, so that nothing is lost.
 
 mod coverage;
 pub(crate) mod heading;
