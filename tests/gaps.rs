@@ -120,15 +120,20 @@ fn dashed(angle: f64, width: f64, dashes: Dashes) -> Stroke {
 
 const PATTERNS: [(f64, f64); 4] = [(4.0, 4.0), (8.0, 4.0), (6.0, 3.0), (3.0, 5.0)];
 
+/// Every dash of a line of 140 pixels is a stroke, but for one that its end may cut off.
+fn all_kept(scan: &Scan, period: f64) -> Result<(), String> {
+    let count = (140.0 / period).ceil() as usize;
+    let kept = traced(scan, None, Dashing::Keep).strokes.len();
+    ensure(kept.abs_diff(count) <= 1, || format!("{kept} of {count} dashes"))
+}
+
 #[test]
 fn dashes_are_kept_or_joined() {
     let cases = pairs(&pairs(&steps(0.0, 165.0, 15.0), &[2.0, 3.0]), &PATTERNS);
     sweep("dashed lines", 1.0, &cases, |&((angle, width), (dash, gap))| {
         let truth = page(vec![dashed(angle, width, Dashes { dash: dash * width, gap: gap * width, offset: 0.0 })]);
         let scan = rendered(&truth);
-        let count = (140.0 / ((dash + gap) * width)).ceil() as usize;
-        let kept = traced(&scan, None, Dashing::Keep).strokes.len();
-        ensure(kept.abs_diff(count) <= 1, || format!("{kept} of {count} dashes"))?;
+        all_kept(&scan, (dash + gap) * width)?;
         let joined = traced(&scan, None, Dashing::Join);
         let [stroke] = &joined.strokes[..] else { return Err(format!("{} strokes", joined.strokes.len())) };
         let found = stroke.dashes.ok_or("no dashes")?;
@@ -144,9 +149,7 @@ fn dashes_on_paper_are_not_breaks() {
     sweep("dashes on paper", 1.0, &cases, |&((angle, width), (dash, gap))| {
         let truth = page(vec![dashed(angle, width, Dashes { dash: dash * width, gap: gap * width, offset: 0.0 })]);
         let paper = scan_of(Paper::INK.scan(&rendered(&truth).gray, angle as u64));
-        let count = (140.0 / ((dash + gap) * width)).ceil() as usize;
-        let kept = traced(&paper, None, Dashing::Keep).strokes.len();
-        ensure(kept.abs_diff(count) <= 1, || format!("{kept} of {count} dashes"))?;
+        all_kept(&paper, (dash + gap) * width)?;
         let joined = traced(&paper, None, Dashing::Join).strokes.len();
         ensure(joined == 1, || format!("{joined} strokes when joined"))
     });
@@ -158,9 +161,7 @@ fn dashes_with_a_line_width_of_paper_between_them_are_not_breaks() {
     sweep("narrow gaps between dashes", 1.0, &cases, |&((angle, width), (dash, gap))| {
         let truth = page(vec![dashed(angle, width, Dashes { dash: dash * width, gap: gap * width, offset: 0.0 })]);
         let paper = scan_of(Paper::INK.scan(&rendered(&truth).gray, angle as u64));
-        let count = (140.0 / ((dash + gap) * width)).ceil() as usize;
-        let kept = traced(&paper, None, Dashing::Keep).strokes.len();
-        ensure(kept.abs_diff(count) <= 1, || format!("{kept} of {count} dashes"))
+        all_kept(&paper, (dash + gap) * width)
     });
 }
 

@@ -1,9 +1,10 @@
 //! The pattern of a dashed line starts where its trail does. The centreline of a closed one may start elsewhere and run the
 //! other way around.
 
+use super::outline::tangent;
 use crate::drawing::{Centreline, Dashes};
 use crate::graph::TrailPoint;
-use kurbo::{ParamCurve, ParamCurveArclen, ParamCurveDeriv, ParamCurveNearest, PathSeg, Vec2};
+use kurbo::{ParamCurve, ParamCurveArclen, ParamCurveNearest, PathSeg};
 
 const ACCURACY: f64 = 1e-3;
 
@@ -16,18 +17,10 @@ pub(super) fn along(dashes: Dashes, walk: &[TrailPoint], centreline: &Centreline
     let Some((k, at)) = nearest.min_by(|a, b| a.1.distance_sq.total_cmp(&b.1.distance_sq)) else { return dashes };
     let before: f64 = pieces[..k].iter().map(|piece| piece.arclen(ACCURACY)).sum();
     let start = before + pieces[k].subsegment(0.0..at.t).arclen(ACCURACY);
-    let onwards = tangent(&pieces[k], at.t).dot(second.point - first.point) >= 0.0;
+    let onwards = tangent(&pieces[k], at.t).is_none_or(|t| t.dot(second.point - first.point) >= 0.0);
     if onwards {
         Dashes { offset: (dashes.offset - start).rem_euclid(dashes.dash + dashes.gap), ..dashes }
     } else {
         dashes.reversed(start)
-    }
-}
-
-fn tangent(piece: &PathSeg, t: f64) -> Vec2 {
-    match piece {
-        PathSeg::Line(line) => line.p1 - line.p0,
-        PathSeg::Quad(quad) => quad.deriv().eval(t).to_vec2(),
-        PathSeg::Cubic(cubic) => cubic.deriv().eval(t).to_vec2(),
     }
 }

@@ -118,7 +118,8 @@ fn sections(centreline: &Centreline, profile: &Profile, breaks: &[f64], line_wid
     sections
 }
 
-fn tangent(piece: &PathSeg, t: f64) -> Option<Vec2> {
+/// The unit tangent of a piece of a path; `None` where its derivative vanishes.
+pub(super) fn tangent(piece: &PathSeg, t: f64) -> Option<Vec2> {
     let derivative = match piece {
         PathSeg::Line(l) => l.p1 - l.p0,
         PathSeg::Quad(q) => q.deriv().eval(t).to_vec2(),

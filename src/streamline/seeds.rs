@@ -1,4 +1,4 @@
-//! Where walks begin: on the ridge of the ink, where its direction is most certain.
+//! Where walks begin: on the ridge of the ink, where its direction is most certain; then in ink that is left over.
 
 use super::coverage::Coverage;
 use crate::clean::{LineImage, is_ridge};
@@ -32,8 +32,8 @@ pub(super) fn seeds(image: &LineImage, frames: &FrameField) -> Vec<Seed> {
     ranked((0..image.mask.height()).into_par_iter().flat_map_iter(of_row).collect())
 }
 
-/// Seeds in a part of the ink, left, top, right and bottom in pixels, where a disc of half a line width lies in ink that
-/// nothing covers yet: lines so close to others that their ridge is not their own.
+/// Seeds in a part of the ink, left, top, right and bottom in pixels, where a disc of [`LEFT_OVER`] lies in ink that nothing
+/// covers yet: lines so close to others that their ridge is not their own.
 pub(super) fn leftover(image: &LineImage, frames: &FrameField, coverage: &Coverage, part: [usize; 4]) -> Vec<Seed> {
     let [left, top, right, bottom] = part;
     let radius = (LEFT_OVER * image.line_width).max(1.0);
