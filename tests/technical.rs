@@ -59,6 +59,43 @@ fn near_parallel_lines_stay_two() {
     );
 }
 
+/// Two lines with so many pixels of paper between them.
+fn close((paper, width): (f64, f64), turn: f64) -> Drawing {
+    let (at, half) = (frame(CENTER + Vec2::new(0.3, 0.1), turn), 0.5 * (width + paper));
+    page([-half, half].map(|y| line(at(-45.0, y), at(45.0, y), width)).to_vec())
+}
+
+#[test]
+fn lines_with_hardly_any_paper_between_them_are_two() {
+    let cases = pairs(&pairs(&[0.75, 1.0, 1.25], &WIDTHS), &steps(0.0, 90.0, 7.5));
+    figures(
+        "close lines",
+        0.974,
+        &cases,
+        |&(place, turn)| close(place, turn),
+        |&((_, width), _), truth, traced| {
+            same_strokes(truth, traced, 0.1 * width + 0.5)?;
+            straight(traced, 0.5)
+        },
+    );
+}
+
+#[test]
+fn pencil_lines_with_little_paper_between_them_are_two() {
+    let cases = pairs(&pairs(&[1.25, 1.6, 2.0, 2.5], &WIDTHS[..3]), &steps(0.0, 90.0, 7.5));
+    figures_on(
+        "close lines in pencil",
+        0.884,
+        &cases,
+        |&(place, turn)| close(place, turn),
+        |&((paper, width), turn), drawing| pencil(drawing, paper + 10.0 * width + turn),
+        |&((_, width), _), truth, traced| {
+            same_strokes(truth, traced, 0.2 * width + 0.6)?;
+            straight(traced, 0.7)
+        },
+    );
+}
+
 #[test]
 fn lines_that_run_together_are_two() {
     // Two lines that meet at their ends under an angle that no corner has.

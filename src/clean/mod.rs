@@ -9,6 +9,7 @@ mod runs;
 mod solids;
 mod specks;
 mod threshold;
+mod valleys;
 mod width;
 
 pub(crate) use blur::{profile_at, unblurred_width};
@@ -192,6 +193,16 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         mask = ink.mapped(false, |i| i > threshold::level(noise));
         depth = distance(&mask);
         cancel.check()?;
+        line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
+    }
+    cancel.check()?;
+    let between = valleys::deepened(&ink, line_width);
+    if !between.is_empty() {
+        for (x, y, paper) in between {
+            ink[(x, y)] = paper;
+            mask[(x, y)] &= paper > threshold::level(noise);
+        }
+        depth = distance(&mask);
         line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
     }
     cancel.check()?;

@@ -8,7 +8,7 @@ use super::line::fit_line;
 use super::samples::Samples;
 use super::segmentation::{Kind, Piece, near};
 use crate::drawing::Segment;
-use kurbo::{CubicBez, Line, ParamCurveNearest, Point, Vec2};
+use kurbo::{Line, ParamCurveNearest, Point, Rect, Shape, Vec2};
 
 /// Pieces that meet at a larger angle than this (18 degrees) make a corner.
 pub(super) const CORNER: f64 = 0.31;
@@ -26,6 +26,9 @@ const MISFIT: f64 = 1.2;
 const COURSE: f64 = 2.0;
 /// Lines shorter than this many line widths give way to a curve beside them.
 const SHORT: f64 = 5.0;
+/// How far a cubic may leave the box of its samples, in pixels; and how often its handles are shortened by a quarter.
+const ASTRAY: f64 = 2.0;
+const SHORTENED: usize = 30;
 /// How many pieces of a section are given more freedom.
 const REPAIRS: usize = 4;
 
@@ -302,13 +305,21 @@ fn segments(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance:
 }
 
 /// The cubic of one piece between its joints. Where points are no line at all, as in a tangle, least squares may want
-/// handles that lead far away: none is longer than the piece, which may have no length at all.
+/// handles that lead far away: they are shortened until the curve stays where its samples are.
 fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
     let ends = Ends { start: from.point, end: to.point, start_tangent: from.tangent, end_tangent: to.tangent };
-    let CubicBez { p0, p1, p2, p3 } = fit_cubic(samples, piece.from, piece.to, &ends, 8).curve;
-    let longest = (samples.arc[piece.to] - samples.arc[piece.from]).max((p3 - p0).hypot()).max(f64::MIN_POSITIVE);
-    let held = |from: Point, to: Point| from + (to - from) * (longest / (to - from).hypot().max(longest));
-    Segment::Cubic(CubicBez::new(p0, held(p0, p1), held(p3, p2), p3))
+    let mut curve = fit_cubic(samples, piece.from, piece.to, &ends, 8).curve;
+    let points = samples.points[piece.from..=piece.to].iter();
+    let spread = points.fold(Rect::from_points(curve.p0, curve.p3), |spread, &p| spread.union_pt(p));
+    let room = spread.inflate(ASTRAY, ASTRAY);
+    // Without handles it is the chord, but for rounding.
+    for _ in 0..SHORTENED {
+        if room.union(curve.bounding_box()) == room {
+            break;
+        }
+        (curve.p1, curve.p2) = (curve.p0.lerp(curve.p1, 0.75), curve.p3.lerp(curve.p2, 0.75));
+    }
+    Segment::Cubic(curve)
 }
 
 /// The arc between two joints, if it keeps to their tangents and to the samples.
