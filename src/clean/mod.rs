@@ -1,4 +1,5 @@
-//! From a scan to the ink that is to be traced: evenly lit, thresholded, despeckled, at a known line width.
+//! From a scan to the ink that is to be traced: evenly lit, thresholded, despeckled, at a known line width, with paper
+//! between lines that are close together.
 
 mod blur;
 mod colors;
@@ -196,12 +197,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
     }
     cancel.check()?;
-    let between = valleys::deepened(&ink, line_width);
-    if !between.is_empty() {
-        for (x, y, paper) in between {
-            ink[(x, y)] = paper;
-            mask[(x, y)] &= paper > threshold::level(noise);
-        }
+    if valleys::deepen(&mut ink, &mut mask, line_width, threshold::level(noise)) {
         depth = distance(&mask);
         line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
     }

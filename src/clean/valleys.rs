@@ -5,7 +5,7 @@
 //! profile over a few line widths has two ridges, each as wide as a line. The ink between them is stretched until the
 //! bottom is paper.
 
-use crate::raster::Raster;
+use crate::raster::{Mask, Raster};
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -51,8 +51,18 @@ struct Valley {
     here: f32,
 }
 
+/// Takes the ink out of valleys; where less than `level` is left, it counts as paper. Whether there were any.
+pub(super) fn deepen(ink: &mut Raster<f32>, mask: &mut Mask, line_width: f64, level: f32) -> bool {
+    let between = deepened(ink, line_width);
+    for &(x, y, left) in &between {
+        ink[(x, y)] = left;
+        mask[(x, y)] &= left > level;
+    }
+    !between.is_empty()
+}
+
 /// The pixels in valleys, row by row, and the ink that is left in each.
-pub(super) fn deepened(ink: &Raster<f32>, line_width: f64) -> Vec<(usize, usize, f32)> {
+fn deepened(ink: &Raster<f32>, line_width: f64) -> Vec<(usize, usize, f32)> {
     let of_row = |y: usize| {
         let candidates = (0..ink.width()).filter(move |&x| is_candidate(ink, x, y, line_width));
         candidates.filter_map(move |x| {
