@@ -192,14 +192,11 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         ink = resample::resize(ink, noise, scale);
         cancel.check()?;
         mask = ink.mapped(false, |i| i > threshold::level(noise));
-        depth = distance(&mask);
-        cancel.check()?;
-        line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
+        (depth, line_width) = measured(&ink, &mask);
     }
     cancel.check()?;
     if valleys::deepen(&mut ink, &mut mask, line_width, threshold::level(noise)) {
-        depth = distance(&mask);
-        line_width = width::line_width(&width::ridge_widths(&ink, &mask, &depth));
+        (depth, line_width) = measured(&ink, &mask);
     }
     cancel.check()?;
     specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
@@ -215,6 +212,13 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let colors = page.map(|page| page.colors);
     Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, colors })
+}
+
+/// Depth of the mask and typical width of its lines.
+fn measured(ink: &Raster<f32>, mask: &Mask) -> (Raster<f32>, f64) {
+    let depth = distance(mask);
+    let line_width = width::line_width(&width::ridge_widths(ink, mask, &depth));
+    (depth, line_width)
 }
 
 /// Ink by the light that the paper's level has lost.

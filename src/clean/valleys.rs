@@ -41,7 +41,6 @@ const DEEP: f32 = 0.25;
 const BOTTOM: f32 = 0.15;
 
 /// Where a pixel lies in the profile of a valley.
-#[derive(Clone, Copy)]
 struct Valley {
     /// Ink of the lower ridge.
     ridge: f32,
@@ -114,7 +113,7 @@ fn deepest(ink: &Raster<f32>, p: Point, line_width: f64) -> Option<Valley> {
     (0..DIRECTIONS).filter_map(across).max_by(|a, b| a.depth().total_cmp(&b.depth()))
 }
 
-/// Whether there is clearly more ink to both sides along the normal, as a few samples tell.
+/// Whether there is more ink to both sides along the normal, and enough for ridges, as a few samples tell.
 fn is_lower(ink: &Raster<f32>, p: Point, normal: Vec2, line_width: f64) -> bool {
     let along = normal.turn_90() * (0.5 * ALONG * line_width);
     let mean = |q: Point| (-1..=1).map(|k| ink.sample(q + along * f64::from(k))).sum::<f32>() / 3.0;
@@ -172,11 +171,13 @@ mod tests {
     use super::super::blur::profile_at;
     use super::*;
 
+    const MIDDLE: Point = Point::new(40.2, 39.9);
+
     /// Two blurred lines of a width, so many pixels of paper between them, through the middle of a page of 80 x 80.
     fn pair(width: f64, paper: f64, blur: f64, angle: f64) -> Raster<f32> {
         let normal = Vec2::from_angle(angle);
         Raster::from_fn(80, 80, |x, y| {
-            let d = (Point::new(x as f64 + 0.5, y as f64 + 0.5) - Point::new(40.2, 39.9)).dot(normal);
+            let d = (Point::new(x as f64 + 0.5, y as f64 + 0.5) - MIDDLE).dot(normal);
             let apart = 0.5 * (width + paper);
             (profile_at(d - apart, width, blur) + profile_at(d + apart, width, blur)) as f32
         })
@@ -192,7 +193,7 @@ mod tests {
                 }
                 let (normal, along) = (Vec2::from_angle(angle), Vec2::from_angle(angle).turn_90());
                 for s in (-20..=20).map(f64::from) {
-                    let p = Point::new(40.2, 39.9) + along * s;
+                    let p = MIDDLE + along * s;
                     let name = format!("{width} {paper} {blur} {angle:.2} at {s}");
                     assert!(ink.sample(p) < 0.5, "{name}: {}", ink.sample(p));
                     for side in [-1.0, 1.0] {

@@ -314,7 +314,7 @@ fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
     let room = spread.inflate(ASTRAY, ASTRAY);
     // Without handles it is the chord, but for rounding.
     for _ in 0..SHORTENED {
-        if room.union(curve.bounding_box()) == room {
+        if room.contains_rect(curve.bounding_box()) {
             break;
         }
         (curve.p1, curve.p2) = (curve.p0.lerp(curve.p1, 0.75), curve.p3.lerp(curve.p2, 0.75));
