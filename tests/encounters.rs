@@ -64,7 +64,7 @@ fn a_crossing_beside_a_crossing_is_three_straight_strokes() {
     let cases = pairs(&pairs(&pairs(&apart, &slants), &WIDTHS[..4]), &TURNS);
     figures(
         "twin crossings",
-        0.895,
+        0.883,
         &cases,
         |&(((apart, slants), width), turn)| {
             let at = |side: f64| polar(CENTER, turn, side * 0.5 * apart * width);

@@ -7,8 +7,8 @@
 mod common;
 
 use common::compare::ends_apart;
-use common::draw::{arc, line, polar, polyline, sheet};
-use common::figures::{figures, like_stroke, same_strokes, straight};
+use common::draw::{arc, line, polar, polyline, rendered, sheet};
+use common::figures::{figures, figures_on, like_stroke, same_strokes, straight};
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Drawing, Stroke};
 use kurbo::Point;
@@ -38,7 +38,7 @@ fn a_line_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(0.0, 170.0, 10.0), &PENS);
     figures(
         "ends of lines of every width",
-        0.894,
+        0.988,
         &cases,
         |&(angle, width)| {
             let center = CENTER + kurbo::Vec2::new(0.3, 0.7);
@@ -55,12 +55,36 @@ fn a_line_ends_within_half_a_pixel_at_every_width() {
     );
 }
 
+/// Renderers draw a line of one pixel as one of its own: without caps, as much ink in each row or column, whichever it
+/// crosses faster, and so thinner the nearer to a diagonal.
+#[test]
+fn a_renderers_hairline_is_one_line_to_its_ends() {
+    let cases = pairs(&steps(0.0, 175.0, 5.0), &[(0.0, 0.0), (0.3, 0.7), (0.5, 0.5)]);
+    figures_on(
+        "hairlines of a renderer",
+        0.99,
+        &cases,
+        |&(angle, offset)| {
+            let center = CENTER + kurbo::Vec2::from(offset);
+            page(vec![line(polar(center, angle, -70.0), polar(center, angle, 70.0), 1.0)])
+        },
+        |_, drawing| rendered(drawing),
+        |_, truth, traced| {
+            ensure(traced.strokes.len() == 1, || format!("{} strokes", traced.strokes.len()))?;
+            let stroke = &truth.strokes[0].centreline;
+            let off = ends_apart(traced, &[stroke.start(), stroke.end()]);
+            ensure(off <= 0.75, || format!("an end is off by {off:.2}"))?;
+            straight(traced, 0.35)
+        },
+    );
+}
+
 #[test]
 fn an_arc_ends_within_half_a_pixel_at_every_width() {
     let cases = pairs(&steps(60.0, 300.0, 60.0), &PENS);
     figures(
         "ends of arcs of every width",
-        0.86,
+        0.98,
         &cases,
         |&(sweep, width)| page(vec![arc(CENTER, 64.0, 0.3, sweep.to_radians(), width)]),
         |_, truth, traced| {
@@ -78,7 +102,7 @@ fn a_corner_is_sharp_at_every_width() {
     let cases = pairs(&pairs(&[45.0, 90.0, 135.0], &PENS), &[0.0, 25.0]);
     figures(
         "corners of every width",
-        0.883,
+        0.966,
         &cases,
         |&((opening, width), turn)| {
             let tip = polar(CENTER, turn, -40.0);

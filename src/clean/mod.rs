@@ -28,6 +28,7 @@ use distance::distance;
 use imageproc::filter::gaussian_blur_f32;
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
+use resample::Resampling;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
@@ -187,9 +188,10 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     let widths = width::ridge_widths(&ink, &mask, &depth);
     let mut line_width = width::line_width(&widths);
-    let scale = resample::scale_for(mask.size(), noise, &widths, line_width);
+    let resampling = Resampling::of(mask.size(), noise, &widths, line_width);
+    let scale = resampling.scale;
     if scale != 1.0 {
-        ink = resample::resize(ink, noise, scale);
+        ink = resampling.apply(ink);
         cancel.check()?;
         mask = ink.mapped(false, |i| i > threshold::level(noise));
         (depth, line_width) = measured(&ink, &mask);
@@ -206,8 +208,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     let blur = match noise > 0.0 {
         true => blur::estimate(&ink, &mask, &depth, line_width),
-        false if scale > 1.0 => resample::SOFTENING,
-        false => 0.0,
+        false => resampling.blur(),
     };
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let colors = page.map(|page| page.colors);

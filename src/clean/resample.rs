@@ -3,6 +3,7 @@
 use super::smooth;
 use crate::raster::Raster;
 use image::imageops::{FilterType, resize as resize_image};
+use kurbo::Point;
 
 /// Lines wider than this many pixels carry no more detail for it: they are traced at about half this width.
 const THICK: f64 = 14.0;
@@ -13,32 +14,106 @@ const THIN_ON_SCAN: f64 = 1.75;
 /// The largest raster that is enlarged, in pixels.
 const ENLARGE_LIMIT: usize = 30_000_000;
 
-/// The factor by which to resample a drawing of a size, from its grain and the sorted widths of its lines; 1 for most.
-pub(super) fn scale_for((width, height): (usize, usize), noise: f64, widths: &[f64], line_width: f64) -> f64 {
-    let thin = if noise > 0.0 { THIN_ON_SCAN } else { THIN };
-    if line_width < thin && 4 * width * height <= ENLARGE_LIMIT {
-        return 2.0;
-    }
-    let Some(&thin) = widths.get(widths.len() / 10) else { return 1.0 };
-    // A fine line among thick ones keeps at least four pixels.
-    let block = (2.0 * line_width / THICK).round().min((thin / 4.0).floor());
-    let shrinks = line_width > THICK && block >= 2.0 && width.min(height) as f64 / block >= 16.0;
-    if shrinks { block.recip() } else { 1.0 }
-}
-
 /// Standard deviation, in pixels of the enlarged raster, of the blur that takes the staircase of pixels out of a clean
 /// render's lines that are hardly wider than a pixel.
-pub(super) const SOFTENING: f64 = 0.8;
+const SOFTENING: f64 = 0.8;
+/// Lines that measure less than this many pixels are hairlines, whose ink may fill no pixel,
+const HAIRLINE: f64 = 1.9;
+/// and this is theirs.
+const SOFTENING_OF_HAIRLINES: f64 = 1.0;
+/// Standard deviation of the blur that an enlarged hairline has anyway: of a pixel's own square and of interpolation.
+const INTERPOLATED: f64 = 0.82;
 
-/// Resamples ink by a factor of [`scale_for`]: every pixel becomes four, or a block of them becomes one.
-pub(super) fn resize(ink: Raster<f32>, noise: f64, scale: f64) -> Raster<f32> {
-    if scale < 1.0 {
-        return averaged(&ink, scale.recip().round() as usize);
+/// How a drawing is resampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Resampling {
+    /// Pixels of the new raster per pixel of the old: 2, 1 or the inverse of a whole number.
+    pub scale: f64,
+    /// Whether the lines of a clean render are smoothed once they are enlarged, and how wide they are.
+    smoothed: Option<Thin>,
+}
+
+/// Lines of a clean render that is enlarged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Thin {
+    Line,
+    Hairline,
+}
+
+impl Resampling {
+    /// What suits a drawing of a size, from its grain and the sorted widths of its lines; none for most.
+    pub fn of((width, height): (usize, usize), noise: f64, widths: &[f64], line_width: f64) -> Self {
+        let by = |scale: f64| Self { scale, smoothed: None };
+        let thin = if noise > 0.0 { THIN_ON_SCAN } else { THIN };
+        if line_width < thin && 4 * width * height <= ENLARGE_LIMIT {
+            let kind = if line_width < HAIRLINE { Thin::Hairline } else { Thin::Line };
+            return Self { scale: 2.0, smoothed: (noise == 0.0).then_some(kind) };
+        }
+        let Some(&thin) = widths.get(widths.len() / 10) else { return by(1.0) };
+        // A fine line among thick ones keeps at least four pixels.
+        let block = (2.0 * line_width / THICK).round().min((thin / 4.0).floor());
+        let shrinks = line_width > THICK && block >= 2.0 && width.min(height) as f64 / block >= 16.0;
+        by(if shrinks { block.recip() } else { 1.0 })
     }
-    let (width, height) = (2 * ink.width() as u32, 2 * ink.height() as u32);
-    let resized = Raster::from_image(resize_image(&ink.into_image(), width, height, FilterType::CatmullRom));
-    let resized = if noise == 0.0 { smooth(resized, SOFTENING as f32) } else { resized };
-    resized.map(|i| i.clamp(0.0, 1.0))
+
+    /// Standard deviation of the blur of a clean render's lines once it is resampled, in pixels of the new raster.
+    pub fn blur(&self) -> f64 {
+        match self.smoothed {
+            None => 0.0,
+            Some(Thin::Line) => SOFTENING,
+            Some(Thin::Hairline) => SOFTENING_OF_HAIRLINES.hypot(INTERPOLATED),
+        }
+    }
+
+    /// Resamples ink: every pixel becomes four, or a block of them becomes one.
+    pub fn apply(&self, ink: Raster<f32>) -> Raster<f32> {
+        if self.scale < 1.0 {
+            return averaged(&ink, self.scale.recip().round() as usize);
+        }
+        let (width, height) = (2 * ink.width() as u32, 2 * ink.height() as u32);
+        let resized = Raster::from_image(resize_image(&ink.into_image(), width, height, FilterType::CatmullRom));
+        let resized = match self.smoothed {
+            None => resized,
+            Some(Thin::Line) => smooth(resized, SOFTENING as f32),
+            Some(Thin::Hairline) => evened(smooth(resized, SOFTENING_OF_HAIRLINES as f32)),
+        };
+        resized.map(|i| i.clamp(0.0, 1.0))
+    }
+}
+
+/// Side of the blocks over which the ink of thin lines is averaged, in pixels of the enlarged raster.
+const BLOCK: usize = 8;
+/// The contraharmonic mean of the ink across a thin line, whose profile is all but Gaussian, as a share of its peak:
+/// the square root of 3/4.
+const MEAN_OF_PEAK: f32 = 0.866;
+/// Lines fainter than this are none.
+const FAINTEST: f32 = 0.3;
+
+/// Ink as a share of that of the lines near it: a thin line, whose ink fills no pixel, is as dark as others.
+fn evened(ink: Raster<f32>) -> Raster<f32> {
+    let sums = |power: i32| {
+        let (columns, rows) = (ink.width().div_ceil(BLOCK), ink.height().div_ceil(BLOCK));
+        let sums = Raster::from_rows(columns, rows, 0.0, |row, sums| {
+            for y in row * BLOCK..((row + 1) * BLOCK).min(ink.height()) {
+                let blocks = ink.row(y).chunks(BLOCK);
+                sums.iter_mut().zip(blocks).for_each(|(s, b)| *s += b.iter().map(|i| i.powi(power)).sum::<f32>());
+            }
+        });
+        smooth(sums, 1.0)
+    };
+    let (fourth, third) = (sums(4), sums(3));
+    let core = Raster::from_fn(third.width(), third.height(), |x, y| {
+        (fourth[(x, y)] / third[(x, y)].max(1e-6) / MEAN_OF_PEAK).clamp(FAINTEST, 1.0)
+    });
+    Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
+        for (x, (to, &i)) in row.iter_mut().zip(ink.row(y)).enumerate() {
+            if i > 0.0 {
+                let within = |at: usize, n: usize| ((at as f64 + 0.5) / BLOCK as f64).clamp(0.5, n as f64 - 0.5);
+                let cell = Point::new(within(x, core.width()), within(y, core.height()));
+                *to = i / core.sample(cell);
+            }
+        }
+    })
 }
 
 /// The means of square blocks; those at the right and at the bottom are cut off by the border.

@@ -104,7 +104,14 @@ pub fn scan_by(drawing: &Drawing, pen: Pen) -> Scan {
             line_join: pen.join,
             ..tiny_skia::Stroke::default()
         };
-        pixmap.stroke_path(&skia_path(&stroke.centreline.to_path()), &paint, &pen, Transform::identity(), None);
+        let path = skia_path(&stroke.centreline.to_path());
+        if stroke.width <= 1.0 {
+            // As a line, it would be one of its own: without caps, and thinner the nearer to a diagonal.
+            let outline = path.stroke(&pen, 4.0).expect("an outline");
+            pixmap.fill_path(&outline, &paint, FillRule::Winding, Transform::identity(), None);
+            continue;
+        }
+        pixmap.stroke_path(&path, &paint, &pen, Transform::identity(), None);
     }
     let gray = pixmap.pixels().iter().map(|p| 1.0 - f32::from(p.alpha()) / 255.0).collect();
     scan_of(Raster::from_vec(width as usize, height as usize, gray).expect("one sample a pixel"))
