@@ -74,8 +74,7 @@ impl Vectorizer {
         let mut image = clean::clean_until(scan, &self.options, &cancel)?;
         observer.on_line_image(&mut image)?;
         image.validate()?;
-        let field = self.estimate(&image, &cancel)?;
-        self.follow(scan, &image, field, observer)
+        self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected.
@@ -102,8 +101,8 @@ impl Vectorizer {
         let mut image = clean::clean_until(scan, &self.options, &observer.cancel())?;
         observer.on_line_image(&mut image)?;
         image.validate()?;
-        let (width, height) = image.ink.size();
-        let graph = self.follow(scan, &image, field.resized(width, height), observer)?;
+        let resized = |image: &LineImage| Ok(field.resized(image.ink.width(), image.ink.height()));
+        let graph = self.follow(scan, &image, &resized, observer)?;
         self.draw(&graph, observer)
     }
 
@@ -114,7 +113,12 @@ impl Vectorizer {
     pub fn field(&self, scan: &Scan) -> Result<PolyVectorField> {
         let image = clean::clean(scan, &self.options);
         let (width, height) = scan.gray.size();
-        Ok(self.estimate(&image, &Cancel::default())?.resized(width, height))
+        let cancel = Cancel::default();
+        let mut field = self.estimate(&image, &cancel)?.resized(width, height);
+        if let Some(broad) = &image.broad {
+            field.fill_from(&self.estimate(broad, &cancel)?.resized(width, height));
+        }
+        Ok(field)
     }
 
     fn estimate(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
@@ -123,13 +127,27 @@ impl Vectorizer {
         Ok(field)
     }
 
+    /// From the ink to the graph, by a source of fields.
     fn follow(
         &self,
         scan: &Scan,
         image: &LineImage,
-        mut field: PolyVectorField,
+        field: &dyn Fn(&LineImage) -> Result<PolyVectorField>,
         observer: &mut dyn Observer,
     ) -> Result<StrokeGraph> {
+        let broad = image.broad.as_ref().map(|broad| self.layer(broad, field(broad)?, observer)).transpose()?;
+        let mut graph = self.layer(image, field(image)?, observer)?;
+        if let Some(broad) = broad {
+            graph = graph::layers::join(graph, broad);
+        }
+        (graph.page.width, graph.page.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
+        graph.page.dpi = scan.dpi;
+        observer.on_graph(image, &mut graph)?;
+        Ok(graph)
+    }
+
+    /// The graph of the lines of one image.
+    fn layer(&self, image: &LineImage, mut field: PolyVectorField, observer: &mut dyn Observer) -> Result<StrokeGraph> {
         observer.on_field(image, &mut field)?;
         same_size(&field, &image.ink)?;
         let cancel = observer.cancel();
@@ -141,11 +159,7 @@ impl Vectorizer {
                 streamlines.push(streamline);
             }
         }
-        let mut graph = graph::build(image, &streamlines, &self.options, &cancel)?;
-        (graph.page.width, graph.page.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
-        graph.page.dpi = scan.dpi;
-        observer.on_graph(image, &mut graph)?;
-        Ok(graph)
+        graph::build(image, &streamlines, &self.options, &cancel)
     }
 }
 

@@ -171,7 +171,7 @@ fn a_corner_that_stands_on_a_line_is_one_stroke() {
     let cases = pairs(&pairs(&[40.0, 60.0, 90.0, 120.0], &WIDTHS[..4]), &TURNS);
     figures(
         "corners on a line",
-        0.854,
+        0.833,
         &cases,
         |&((opening, width), turn)| {
             let arm = |side: f64| polar(CENTER, turn + 90.0 + 0.5 * side * opening, 50.0);
@@ -248,7 +248,7 @@ fn two_arcs_that_leave_a_line_at_one_point_leave_it_whole() {
     let cases = pairs(&pairs(&[30.0, 45.0, 70.0], &WIDTHS[..4]), &TURNS);
     figures(
         "twin arcs from a line",
-        0.583,
+        0.555,
         &cases,
         |&((radius, width), turn)| {
             let center = polar(CENTER, turn, -10.0);
@@ -284,7 +284,7 @@ fn a_circle_that_a_line_touches_stays_a_circle_and_a_line() {
     let cases = pairs(&pairs(&pairs(&[14.0, 22.0, 32.0], &[1.0, 0.5, 0.0]), &WIDTHS), &TURNS);
     figures(
         "tangents of circles",
-        0.718,
+        0.755,
         &cases,
         |&(((radius, depth), width), turn)| {
             let touch = polar(CENTER, turn - 90.0, radius + (1.0 - depth) * width);
@@ -306,7 +306,7 @@ fn circles_that_touch_stay_circles() {
     let cases = pairs(&cases, &[false, true]);
     figures(
         "circles that touch",
-        0.562,
+        0.552,
         &cases,
         |&((((large, small), width), turn), inside)| {
             let (large, small) = if inside { (large + 24.0, small) } else { (large, small) };
@@ -327,7 +327,7 @@ fn an_arc_that_leaves_a_line_is_a_branch_of_it() {
     let cases = pairs(&pairs(&[40.0, 70.0, 120.0], &WIDTHS), &[0.0, 17.0, 45.0, 100.0]);
     figures(
         "tangential merges",
-        0.866,
+        0.883,
         &cases,
         |&((radius, width), turn)| {
             let center = polar(CENTER, turn, -10.0);

@@ -7,8 +7,9 @@
 mod common;
 
 use common::compare::ends_apart;
-use common::draw::{arc, line, polar, polyline, rendered, sheet};
+use common::draw::{arc, line, on_paper, polar, polyline, rendered, sheet};
 use common::figures::{figures, figures_on, like_stroke, same_strokes, straight};
+use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps};
 use fieldtrace::drawing::{Drawing, Stroke};
 use kurbo::Point;
@@ -123,7 +124,7 @@ fn two_pens() -> Vec<(f64, f64)> {
 fn lines_of_two_widths_side_by_side_keep_theirs() {
     figures(
         "two pens side by side",
-        0.357,
+        0.714,
         &pairs(&two_pens(), &[0.0, 30.0]),
         |&((wide, thin), turn)| {
             let bar = |side: f64, width: f64| {
@@ -143,7 +144,7 @@ fn lines_of_two_widths_side_by_side_keep_theirs() {
 fn lines_of_two_widths_cross_straight() {
     figures(
         "two pens that cross",
-        0.404,
+        0.857,
         &pairs(&two_pens(), &[90.0, 50.0]),
         |&((wide, thin), between)| {
             let bar = |angle, width| line(polar(CENTER, angle, -80.0), polar(CENTER, angle, 80.0), width);
@@ -161,7 +162,7 @@ fn lines_of_two_widths_cross_straight() {
 fn a_thin_line_that_ends_on_a_wide_one_is_a_tee() {
     figures(
         "two pens in a tee",
-        0.357,
+        0.857,
         &pairs(&two_pens(), &[90.0, 60.0]),
         |&((wide, thin), slant)| {
             let bar = line(polar(CENTER, 10.0, -80.0), polar(CENTER, 10.0, 80.0), wide);
@@ -173,4 +174,34 @@ fn a_thin_line_that_ends_on_a_wide_one_is_a_tee() {
             straight(traced, 0.6)
         },
     );
+}
+
+/// A frame of a broad pen on 200 x 200 pixels, with fine lines that end on it and one that crosses it.
+fn framed(fine: f64, broad: f64, turn: f64) -> Drawing {
+    let at = |x: f64, y: f64| polar(CENTER, turn, x) + (polar(CENTER, turn + 90.0, y) - CENTER);
+    let frame = polyline(&[at(-60.0, -45.0), at(60.0, -45.0), at(60.0, 45.0), at(-60.0, 45.0)], true, broad);
+    let rung = |x: f64| line(at(x, -45.0), at(x, 45.0), fine);
+    page(vec![frame, rung(-30.0), rung(0.0), line(at(30.0, -70.0), at(30.0, 70.0), fine)])
+}
+
+fn frames() -> Vec<((f64, f64), f64)> {
+    pairs(&[(1.5, 8.0), (2.0, 8.0), (2.0, 12.0), (2.5, 10.0), (3.0, 12.0)], &[0.0, 20.0, 45.0])
+}
+
+fn same_frame(&((_, broad), _): &((f64, f64), f64), truth: &Drawing, traced: &Drawing) -> Result<(), String> {
+    same_strokes(truth, traced, 0.5 + 0.12 * broad)?;
+    same_widths(truth, traced, 0.75)
+}
+
+#[test]
+fn fine_lines_end_on_a_broad_frame_and_cross_it() {
+    let draw = |&((fine, broad), turn): &((f64, f64), f64)| framed(fine, broad, turn);
+    figures("fine lines in a broad frame", 0.9, &frames(), draw, same_frame);
+}
+
+#[test]
+fn fine_lines_end_on_a_broad_frame_in_ink_on_paper_too() {
+    let draw = |&((fine, broad), turn): &((f64, f64), f64)| framed(fine, broad, turn);
+    let scan = |_: &((f64, f64), f64), drawing: &Drawing| on_paper(drawing, Paper::INK, 5);
+    figures_on("fine lines in a broad frame on paper", 0.5, &frames(), draw, scan, same_frame);
 }

@@ -2,6 +2,7 @@
 //! between lines that are close together.
 
 mod blur;
+mod broad;
 mod colors;
 mod distance;
 mod paper;
@@ -14,6 +15,7 @@ mod valleys;
 mod width;
 
 pub(crate) use blur::{profile_at, unblurred_width};
+pub(crate) use broad::RIM;
 pub(crate) use runs::runs;
 pub(crate) use threshold::LEAST_GRAIN;
 pub(crate) use width::is_ridge;
@@ -53,6 +55,8 @@ pub struct LineImage {
     pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
+    /// Lines too broad to be traced beside these, as an image of their own.
+    pub broad: Option<Box<LineImage>>,
     /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
     /// ink is grey.
     pub colors: Option<Raster<[u8; 3]>>,
@@ -145,7 +149,7 @@ impl LineImage {
         let others = [("noise", self.noise, 0.0), ("blur", self.blur, 0.0)];
         match positive.into_iter().chain(others).find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value)) {
             Some((what, value, _)) => broken(format!("the {what} is {value}")),
-            None => Ok(()),
+            None => self.broad.as_ref().map_or(Ok(()), |broad| broad.validate()),
         }
     }
 }
@@ -191,7 +195,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     let resampling = Resampling::of(mask.size(), noise, &widths, line_width);
     let scale = resampling.scale;
     if scale != 1.0 {
-        ink = resampling.apply(ink);
+        ink = resampling.apply(ink, &depth);
         cancel.check()?;
         mask = ink.mapped(false, |i| i > threshold::level(noise));
         (depth, line_width) = measured(&ink, &mask);
@@ -203,16 +207,24 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
     cancel.check()?;
-    let solids = solids::take(&mut mask, &ink, &depth, line_width);
-    let depth = if solids.is_empty() { depth } else { distance(&mask) };
-    cancel.check()?;
     let blur = match noise > 0.0 {
         true => blur::estimate(&ink, &mask, &depth, line_width),
         false => resampling.blur(),
     };
+    let broad = solids::take_broad(&mut mask, &depth, unblurred_width(line_width, blur));
+    let broad = broad.map(|region| broad::take(&mut ink, &mut mask, &region, noise));
+    if broad.is_some() {
+        depth = distance(&mask);
+    }
+    cancel.check()?;
+    let solids = solids::take(&mut mask, &ink, &depth, line_width);
+    let depth = if solids.is_empty() { depth } else { distance(&mask) };
+    cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let colors = page.map(|page| page.colors);
-    Ok(LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, colors })
+    let mut image = LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors };
+    image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
+    Ok(image)
 }
 
 /// Depth of the mask and typical width of its lines.

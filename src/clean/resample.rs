@@ -1,7 +1,8 @@
 //! Very thick and very thin drawings are brought to a width that the later stages know.
 
+use super::distance::distance;
 use super::smooth;
-use crate::raster::Raster;
+use crate::raster::{Mask, Raster};
 use image::imageops::{FilterType, resize as resize_image};
 use kurbo::Point;
 
@@ -18,7 +19,7 @@ const ENLARGE_LIMIT: usize = 30_000_000;
 /// render's lines that are hardly wider than a pixel.
 const SOFTENING: f64 = 0.8;
 /// Lines that measure less than this many pixels are hairlines, whose ink may fill no pixel,
-const HAIRLINE: f64 = 1.9;
+const HAIRLINE: f64 = 1.7;
 /// and this is theirs.
 const SOFTENING_OF_HAIRLINES: f64 = 1.0;
 /// Standard deviation of the blur that an enlarged hairline has anyway: of a pixel's own square and of interpolation.
@@ -46,7 +47,8 @@ impl Resampling {
         let by = |scale: f64| Self { scale, smoothed: None };
         let thin = if noise > 0.0 { THIN_ON_SCAN } else { THIN };
         if line_width < thin && 4 * width * height <= ENLARGE_LIMIT {
-            let kind = if line_width < HAIRLINE { Thin::Hairline } else { Thin::Line };
+            let finest = widths.get(widths.len() / 8).copied().unwrap_or(line_width);
+            let kind = if finest < HAIRLINE { Thin::Hairline } else { Thin::Line };
             return Self { scale: 2.0, smoothed: (noise == 0.0).then_some(kind) };
         }
         let Some(&thin) = widths.get(widths.len() / 10) else { return by(1.0) };
@@ -65,8 +67,8 @@ impl Resampling {
         }
     }
 
-    /// Resamples ink: every pixel becomes four, or a block of them becomes one.
-    pub fn apply(&self, ink: Raster<f32>) -> Raster<f32> {
+    /// Resamples ink of a depth: every pixel becomes four, or a block of them becomes one.
+    pub fn apply(&self, ink: Raster<f32>, depth: &Raster<f32>) -> Raster<f32> {
         if self.scale < 1.0 {
             return averaged(&ink, self.scale.recip().round() as usize);
         }
@@ -75,7 +77,7 @@ impl Resampling {
         let resized = match self.smoothed {
             None => resized,
             Some(Thin::Line) => smooth(resized, SOFTENING as f32),
-            Some(Thin::Hairline) => evened(smooth(resized, SOFTENING_OF_HAIRLINES as f32)),
+            Some(Thin::Hairline) => evened(&smooth(resized, SOFTENING_OF_HAIRLINES as f32), &wide(depth)),
         };
         resized.map(|i| i.clamp(0.0, 1.0))
     }
@@ -89,14 +91,28 @@ const MEAN_OF_PEAK: f32 = 0.866;
 /// Lines fainter than this are none.
 const FAINTEST: f32 = 0.3;
 
-/// Ink as a share of that of the lines near it: a thin line, whose ink fills no pixel, is as dark as others.
-fn evened(ink: Raster<f32>) -> Raster<f32> {
+/// Lines deeper than this many pixels are no hairlines, nor is what lies within so many pixels of them.
+const WIDE: f32 = 2.75;
+const BESIDE_WIDE: f32 = 0.75;
+
+/// Lines too wide to be hairlines, and a margin, from the depth of the ink.
+fn wide(depth: &Raster<f32>) -> Mask {
+    if !depth.data().iter().any(|&d| d > WIDE) {
+        return Mask::filled(depth.width(), depth.height(), false);
+    }
+    distance(&depth.mapped(false, |d| d <= WIDE)).mapped(false, |to_core| to_core <= WIDE + BESIDE_WIDE)
+}
+
+/// Enlarged ink as a share of that of the hairlines near it: their ink may fill no pixel. Wide lines stay as they are.
+fn evened(ink: &Raster<f32>, wide: &Mask) -> Raster<f32> {
     let sums = |power: i32| {
         let (columns, rows) = (ink.width().div_ceil(BLOCK), ink.height().div_ceil(BLOCK));
         let sums = Raster::from_rows(columns, rows, 0.0, |row, sums| {
             for y in row * BLOCK..((row + 1) * BLOCK).min(ink.height()) {
-                let blocks = ink.row(y).chunks(BLOCK);
-                sums.iter_mut().zip(blocks).for_each(|(s, b)| *s += b.iter().map(|i| i.powi(power)).sum::<f32>());
+                let own = ink.row(y).iter().zip(wide.row(y / 2).iter().flat_map(|w| [w, w]));
+                for (x, (&i, _)) in own.enumerate().filter(|(_, (_, wide))| !**wide) {
+                    sums[x / BLOCK] += i.powi(power);
+                }
             }
         });
         smooth(sums, 1.0)
@@ -107,11 +123,9 @@ fn evened(ink: Raster<f32>) -> Raster<f32> {
     });
     Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
         for (x, (to, &i)) in row.iter_mut().zip(ink.row(y)).enumerate() {
-            if i > 0.0 {
-                let within = |at: usize, n: usize| ((at as f64 + 0.5) / BLOCK as f64).clamp(0.5, n as f64 - 0.5);
-                let cell = Point::new(within(x, core.width()), within(y, core.height()));
-                *to = i / core.sample(cell);
-            }
+            let within = |at: usize, n: usize| ((at as f64 + 0.5) / BLOCK as f64).clamp(0.5, n as f64 - 0.5);
+            let cell = Point::new(within(x, core.width()), within(y, core.height()));
+            *to = if i > 0.0 && !wide[(x / 2, y / 2)] { i / core.sample(cell) } else { i };
         }
     })
 }

@@ -1,6 +1,7 @@
-//! Regions far wider than the lines are kept as filled outlines.
+//! Regions far wider than the lines: strokes of a broad pen are lines of their own, others are kept as filled outlines.
 
 use super::distance::distance;
+use super::width::ridge_pixels;
 use crate::drawing::{Color, Fill};
 use crate::raster::{Mask, Raster};
 use contour::ContourBuilder;
@@ -11,26 +12,58 @@ use kurbo::{BezPath, Point};
 /// A number per pixel: 0 outside, else that of the region.
 type Labels = image::ImageBuffer<Luma<u32>, Vec<u32>>;
 
-/// A region is solid when its half width is this many times that of the lines, plus [`MARGIN`].
+/// A region is wider than a line, or two side by side, when its half width is this many times that of the lines, plus
+/// [`MARGIN`].
 const FACTOR: f64 = 2.2;
 const MARGIN: f64 = 1.5;
-/// A region this many times longer than wide is a broad line,
+/// A region this many times longer than wide is a broad line if it is even: a disc of this share of its half width comes
+/// everywhere,
 const ELONGATED: f64 = 5.0;
-/// unless it is more than this many times as wide as the other lines.
+const EVEN: f64 = 0.8;
+/// but for so many squares of its half width, corners of its ends, and this share of its area.
+const CORNERS: f64 = 1.5;
+const UNEVEN: f64 = 0.03;
+/// Nor is more of its ridge than this share, where broad lines cross, this many times as deep and half a pixel.
+const DEEPER_SHARE: f64 = 0.1;
+const DEEPER: f64 = 1.15;
+/// Broad lines are looked for where at least this share of the ridge is as deep.
+const BROAD_SHARE: f64 = 0.02;
+/// An elongated region is solid only if it is more than this many times as wide as the other lines.
 const BROADEST: f64 = 5.0;
 /// Ink beside a solid region that is less than this many squares of the line width is its corner, not a line.
 const CORNER: f64 = 4.0;
 
+/// Half the width, in pixels, from which ink is not a line of a width.
+pub(super) fn half_width_of_wide(line_width: f64) -> f64 {
+    FACTOR * 0.5 * line_width + MARGIN
+}
+
+/// Takes broad lines out of the mask and returns where they are; `None` where there are none.
+pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64) -> Option<Mask> {
+    let radius = half_width_of_wide(line_width);
+    let ridge = ridge_pixels(mask, depth);
+    let deep = ridge.iter().filter(|&&p| f64::from(depth[p]) > radius).count();
+    if deep == 0 || (deep as f64) < BROAD_SHARE * ridge.len() as f64 {
+        return None;
+    }
+    let (region, labels, count) = regions(mask, depth, radius, line_width);
+    let (is_broad, uneven) = broad_labels(&region, &labels, count, depth);
+    if !is_broad.contains(&true) {
+        return None;
+    }
+    let of_line = |x: usize, y: usize| is_broad[labels.get_pixel(x as u32, y as u32)[0] as usize];
+    let broad = Raster::from_fn(mask.width(), mask.height(), |x, y| of_line(x, y) && !uneven[(x, y)]);
+    labels.iter().zip(mask.data_mut()).for_each(|(label, ink)| *ink &= !is_broad[*label as usize]);
+    Some(broad)
+}
+
 /// Takes the solid regions out of the mask and returns their outlines.
 pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line_width: f64) -> Vec<Fill> {
-    let radius = FACTOR * 0.5 * line_width + MARGIN;
+    let radius = half_width_of_wide(line_width);
     if !depth.data().iter().any(|&d| f64::from(d) > radius) {
         return Vec::new();
     }
-    let mut region = opened(mask, depth, radius);
-    absorb_corners(&mut region, mask, line_width);
-    let labels = connected_components(&region.to_gray_image(), Connectivity::Eight, Luma([0u8]));
-    let count = labels.iter().copied().max().unwrap_or(0) as usize;
+    let (_, labels, count) = regions(mask, depth, radius, line_width);
     let solid = solid_labels(&labels, count, depth, line_width);
     let boxes = bounding_boxes(&labels, count);
     let fills = (1..=count).filter(|&label| solid[label]).map(|label| {
@@ -38,10 +71,17 @@ pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line
         Fill { outline, color: Color::BLACK }
     });
     let fills = fills.collect();
-    for (label, ink) in labels.iter().zip(mask.data_mut()) {
-        *ink &= !solid[*label as usize];
-    }
+    labels.iter().zip(mask.data_mut()).for_each(|(label, ink)| *ink &= !solid[*label as usize]);
     fills
+}
+
+/// The regions into which a disc of a radius fits, with their corners: their pixels, the number of each, and how many.
+fn regions(mask: &Mask, depth: &Raster<f32>, radius: f64, line_width: f64) -> (Mask, Labels, usize) {
+    let mut region = opened(mask, depth, radius);
+    absorb_corners(&mut region, mask, line_width);
+    let labels = connected_components(&region.to_gray_image(), Connectivity::Eight, Luma([0u8]));
+    let count = labels.iter().copied().max().unwrap_or(0) as usize;
+    (region, labels, count)
 }
 
 /// Left, top, right and bottom of each label, the last two excluded.
@@ -82,7 +122,36 @@ fn absorb_corners(region: &mut Mask, mask: &Mask, line_width: f64) {
     }
 }
 
-/// Which labels are solid regions rather than broad lines of even width.
+/// Which labels are long lines of even width, and the pixels of all that are not even: where other lines end at them.
+fn broad_labels(region: &Mask, labels: &Labels, count: usize, depth: &Raster<f32>) -> (Vec<bool>, Mask) {
+    let label = |x: usize, y: usize| labels.get_pixel(x as u32, y as u32)[0] as usize;
+    let (mut ridge, mut area, mut lost) = (vec![Vec::new(); count + 1], vec![0.0; count + 1], vec![0.0; count + 1]);
+    for (x, y) in ridge_pixels(region, depth) {
+        ridge[label(x, y)].push(f64::from(depth[(x, y)]));
+    }
+    ridge.iter_mut().for_each(|depths| depths.sort_by(f64::total_cmp));
+    let quantile =
+        |q: f64| move |depths: &Vec<f64>| depths.get((depths.len() as f64 * q) as usize).copied().unwrap_or(0.0);
+    let half: Vec<f64> = ridge.iter().map(quantile(0.5)).collect();
+    let deeper: Vec<f64> = ridge.iter().map(quantile(1.0 - DEEPER_SHARE)).collect();
+    let disc = |x: usize, y: usize| EVEN * half[label(x, y)];
+    let is_core = |x: usize, y: usize| region[(x, y)] && f64::from(depth[(x, y)]) > disc(x, y);
+    let to_core = distance(&Raster::from_fn(region.width(), region.height(), |x, y| !is_core(x, y)));
+    let uneven = |x: usize, y: usize| region[(x, y)] && f64::from(to_core[(x, y)]) > disc(x, y) + 1.0;
+    let uneven = Raster::from_fn(region.width(), region.height(), uneven);
+    for (l, &uneven) in labels.iter().zip(uneven.data()) {
+        area[*l as usize] += 1.0;
+        lost[*l as usize] += f64::from(uneven);
+    }
+    let is_broad = |l: usize| {
+        let (half, deeper) = (half[l], deeper[l]);
+        let long = area[l] >= ELONGATED * (2.0 * half - 1.0).powi(2);
+        l > 0 && long && lost[l] <= CORNERS * half * half + UNEVEN * area[l] && deeper <= DEEPER * half + 0.5
+    };
+    ((0..=count).map(is_broad).collect(), uneven)
+}
+
+/// Which labels are solid regions rather than lines somewhat broader than the others.
 fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>, line_width: f64) -> Vec<bool> {
     let mut area = vec![0usize; count + 1];
     let mut deepest = vec![0f32; count + 1];

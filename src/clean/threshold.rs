@@ -17,6 +17,14 @@ const FLAT: f32 = 0.008;
 /// ink.
 const WANDER: f32 = 4.5;
 const DARK_SHARE: f32 = 0.45;
+/// A page has light lines if this share of its inked cells, of so many pixels a side, and at least so many of them have
+/// less than this share of the common core's ink.
+const CELL: usize = 8;
+const LIGHTER_SHARE: f64 = 0.08;
+const FEWEST_LIGHTER: usize = 8;
+const LIGHTER: f32 = 0.75;
+/// Ink of less than this share of Otsu's level makes no lines, not even light ones.
+const LIGHTEST: f32 = 0.8;
 /// The grain that a scan has at least; less cannot be told from rounding.
 pub(crate) const LEAST_GRAIN: f64 = 0.01;
 
@@ -78,8 +86,8 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shade
     // At the level of the mask, ink still stands out.
     let least = floor / level(noise);
     let core = core.max(least);
-    let nearby = nearby_core(&ink, (0.8 * otsu).max(least));
-    let ink = if is_even(&ink, &nearby, otsu, core) {
+    let nearby = nearby_core(&ink, (LIGHTEST * otsu).max(least));
+    let ink = if is_even(&ink, &nearby, otsu, core) && !has_light_lines(&ink, &nearby, level(noise) * otsu, core) {
         scaled(ink, core)
     } else {
         Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
@@ -148,4 +156,22 @@ fn is_even(ink: &Raster<f32>, nearby: &Raster<f32>, otsu: f32, core: f32) -> boo
     }
     let k = cores.len() / 10;
     *cores.select_nth_unstable_by(k, f32::total_cmp).1 > 0.55 * core
+}
+
+/// Whether the page has lines that are lighter than the common core, and thinner perhaps: broad lines have most of the ink,
+/// but not of the cells with more of it than `least`.
+fn has_light_lines(ink: &Raster<f32>, nearby: &Raster<f32>, least: f32, core: f32) -> bool {
+    let (columns, rows) = (ink.width().div_ceil(CELL), ink.height().div_ceil(CELL));
+    let darkest = |column: usize, row: usize| {
+        let (x0, y0) = (column * CELL, row * CELL);
+        let (x1, y1) = ((x0 + CELL).min(ink.width()), (y0 + CELL).min(ink.height()));
+        let inked = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))).filter(|&p| ink[p] > least);
+        let darkest = inked.clone().max_by(|&a, &b| ink[a].total_cmp(&ink[b]))?;
+        // Less is a speck.
+        (inked.count() >= CELL).then(|| nearby[darkest])
+    };
+    let of_row = |row: usize| (0..columns).filter_map(move |column| darkest(column, row));
+    let cores: Vec<f32> = (0..rows).into_par_iter().flat_map_iter(of_row).collect();
+    let lighter = cores.iter().filter(|&&c| c < LIGHTER * core).count();
+    lighter > FEWEST_LIGHTER && lighter as f64 > LIGHTER_SHARE * cores.len() as f64
 }

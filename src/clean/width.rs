@@ -1,5 +1,6 @@
 //! How wide the lines are.
 
+use super::solids::half_width_of_wide;
 use crate::profile::cross_profile;
 use crate::raster::{Mask, Raster};
 use kurbo::{Point, Vec2};
@@ -55,7 +56,13 @@ pub(super) fn narrowest_direction(ink: &Raster<f32>, p: Point, depth: f32) -> Op
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Typical line width in pixels: the median of the sorted widths on the ridge; 1 without ink.
+/// Lines are fine among broad ones when they are at least this share of all.
+const FINE_SHARE: f64 = 0.12;
+
+/// Typical line width in pixels: the median of the sorted widths on the ridge, or, where most lines are too broad to be
+/// traced beside fine ones, that of the fine ones; 1 without ink.
 pub(super) fn line_width(widths: &[f64]) -> f64 {
-    widths.get(widths.len() / 2).copied().unwrap_or(1.0)
+    let Some(&median) = widths.get(widths.len() / 2) else { return 1.0 };
+    let fine = widths.partition_point(|&width| half_width_of_wide(width) < 0.5 * median);
+    if fine as f64 >= FINE_SHARE * widths.len() as f64 { widths[fine / 2] } else { median }
 }

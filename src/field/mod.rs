@@ -146,6 +146,17 @@ impl PolyVectorField {
         &self.confidence
     }
 
+    /// Takes the directions of another field of its size where it has none.
+    pub(crate) fn fill_from(&mut self, other: &Self) {
+        let ours = self.c0.data_mut().iter_mut().zip(self.c2.data_mut()).zip(self.confidence.data_mut());
+        let theirs = other.c0.data().iter().zip(other.c2.data()).zip(other.confidence.data());
+        for (((c0, c2), confidence), ((&other_c0, &other_c2), &other)) in ours.zip(theirs) {
+            if *confidence == 0.0 {
+                (*c0, *c2, *confidence) = (other_c0, other_c2, other);
+            }
+        }
+    }
+
     /// The field on a grid of another size, by the nearest defined source pixel within one pixel.
     ///
     /// Directions do not change under a uniform scaling, so neither do the coefficients.

@@ -42,13 +42,15 @@ const UNEVEN_PIXELS: f64 = 1.5;
 const LONGEST_DASH: f64 = 8.0;
 
 /// One end of an open stroke, in the open.
-struct FreeEnd {
-    node: NodeIndex,
-    point: Point,
-    course: Tail,
+pub(super) struct FreeEnd {
+    pub node: NodeIndex,
+    pub point: Point,
+    /// Where its course leads to beside the end.
+    pub aim: Point,
+    pub course: Tail,
     width: f64,
     /// Length of its stroke.
-    length: f64,
+    pub length: f64,
 }
 
 /// Two ends that face each other, and how badly.
@@ -138,19 +140,9 @@ impl<'a> Finder<'a> {
         if i / 2 == j / 2 && a.length < 4.0 * distance {
             return None;
         }
-        let beside = |from: &FreeEnd, to: &FreeEnd| {
-            let d = to.point - from.point;
-            let s = d.dot(from.course.heading);
-            let off = d.dot(from.course.heading.turn_90()) - 0.5 * from.course.curvature * s * s;
-            (s > 0.0).then_some(off.abs())
-        };
-        let misfit = beside(a, b)?.max(beside(b, a)?);
-        // Both head into the gap, so the second curves the other way.
-        let bend = 0.5 * (a.course.curvature - b.course.curvature) * distance;
-        let turn = angle_between(a.course.heading, -b.course.heading) - bend;
-        let agree = misfit <= BESIDE * self.image.line_width + BESIDE_SHARE * distance && turn.abs() <= TURN;
+        let misfit = facing(a, b, self.image.line_width)?;
         let link = Link { ends: [i, j], paper: (distance - width).max(0.0), misfit };
-        (agree && self.is_paper(a, b)).then_some(link)
+        self.is_paper(a, b).then_some(link)
     }
 
     /// Whether there is nothing but paper between two ends.
@@ -269,8 +261,24 @@ fn is_even(values: &[f64]) -> bool {
     values.iter().all(|v| (v - middle).abs() <= unevenness(middle))
 }
 
+/// How far two ends lie beside each other's course, if they agree: one line with a gap.
+pub(super) fn facing(a: &FreeEnd, b: &FreeEnd, line_width: f64) -> Option<f64> {
+    let distance = (b.point - a.point).hypot();
+    let beside = |from: &FreeEnd, to: &FreeEnd| {
+        let d = to.point - from.point;
+        let s = d.dot(from.course.heading);
+        let off = d.dot(from.course.heading.turn_90()) - 0.5 * from.course.curvature * s * s;
+        (s > 0.0).then_some(off.abs())
+    };
+    let misfit = beside(a, b)?.max(beside(b, a)?);
+    // Both head into the gap, so the second curves the other way.
+    let bend = 0.5 * (a.course.curvature - b.course.curvature) * distance;
+    let turn = angle_between(a.course.heading, -b.course.heading) - bend;
+    (misfit <= BESIDE * line_width + BESIDE_SHARE * distance && turn.abs() <= TURN).then_some(misfit)
+}
+
 /// The end of a stroke at its start (0) or its last point (1), where it is in the open.
-fn free_end(graph: &StrokeGraph, trail: &Trail, side: usize) -> Option<FreeEnd> {
+pub(super) fn free_end(graph: &StrokeGraph, trail: &Trail, side: usize) -> Option<FreeEnd> {
     if trail.closed {
         return None;
     }
@@ -286,15 +294,16 @@ fn free_end(graph: &StrokeGraph, trail: &Trail, side: usize) -> Option<FreeEnd> 
     let point = graph.graph[node].position;
     let course = course(graph, edge, at_source)?;
     let length = length(graph, trail);
-    let course = if length < SHORT * width && trail.edges.len() == 1 {
+    let (aim, course) = if length < SHORT * width && trail.edges.len() == 1 {
         // Of a dash, the chord says most.
         let chord = point - graph.graph[if at_source { target } else { source }].position;
-        Tail { heading: chord / chord.hypot().max(1e-9), curvature: 0.0, ..course }
+        (point, Tail { heading: chord / chord.hypot().max(1e-9), curvature: 0.0, ..course })
     } else {
         // The course was measured a little before the end.
-        Tail { heading: arm_line(&course, point, graph.page.line_width).1, ..course }
+        let (aim, heading) = arm_line(&course, point, graph.page.line_width);
+        (aim, Tail { heading, ..course })
     };
-    Some(FreeEnd { node, point, course, width, length })
+    Some(FreeEnd { node, point, aim, course, width, length })
 }
 
 fn length(graph: &StrokeGraph, trail: &Trail) -> f64 {
@@ -319,7 +328,7 @@ fn partners(count: usize, links: &[Link]) -> Vec<Option<(usize, usize)>> {
 }
 
 /// Strokes in chains over their gaps; `true` walks a stroke backwards.
-fn chains(strokes: usize, partner: &[Option<(usize, usize)>]) -> Vec<Vec<(usize, bool)>> {
+pub(super) fn chains(strokes: usize, partner: &[Option<(usize, usize)>]) -> Vec<Vec<(usize, bool)>> {
     let mut used = vec![false; strokes];
     let open = (0..partner.len()).filter(|&e| partner[e].is_none());
     let mut chains = Vec::new();

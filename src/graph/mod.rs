@@ -13,6 +13,7 @@ mod course;
 mod ends;
 mod forks;
 mod gaps;
+pub(crate) mod layers;
 mod merge;
 mod nodes;
 mod pens;

@@ -52,14 +52,16 @@ impl Observer for DebugDir<'_> {
         self.write("2-field", &field_overlay(self.scan, field))
     }
 
-    fn on_streamline(&mut self, _image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
-        self.streamlines.push(streamline.clone());
+    fn on_streamline(&mut self, image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
+        let mut in_scan = streamline.clone();
+        in_scan.points.iter_mut().for_each(|p| *p = (p.to_vec2() / image.scale).to_point());
+        self.streamlines.push(in_scan);
         Ok(true)
     }
 
     fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {
         let streamlines = std::mem::take(&mut self.streamlines);
-        self.write("3-streamlines", &streamlines_overlay(self.scan, image.scale, &streamlines))?;
+        self.write("3-streamlines", &streamlines_overlay(self.scan, 1.0, &streamlines))?;
         self.write("4-graph", &graph_overlay(self.scan, image.scale, graph))
     }
 

@@ -112,6 +112,7 @@ mod tests {
             noise: 0.0,
             blur: 0.0,
             solids: Vec::new(),
+            broad: None,
             colors: None,
         };
         let pixels = (0..81).map(|i| (i % 9, i / 9));

@@ -28,7 +28,18 @@ fn picture(lines: &[Line]) -> LineImage {
 fn bare(ink: Raster<f32>) -> LineImage {
     let mask: Mask = ink.map(|i| i > 0.5);
     let depth = mask.map(|m| f32::from(u8::from(m)));
-    LineImage { ink, mask, depth, line_width: 3.0, scale: 1.0, noise: 0.0, blur: 0.0, solids: Vec::new(), colors: None }
+    LineImage {
+        ink,
+        mask,
+        depth,
+        line_width: 3.0,
+        scale: 1.0,
+        noise: 0.0,
+        blur: 0.0,
+        solids: Vec::new(),
+        broad: None,
+        colors: None,
+    }
 }
 
 fn through_center(angle: f64) -> Line {

@@ -59,7 +59,11 @@ impl Observer for Watch<'_> {
     fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
         self.stages.done("clean", || {
             let (ink, solids) = (image.mask.count(), image.solids.len());
-            format!("{ink} ink pixels, lines {:.1} wide, scale {:.2}, {solids} solids", image.line_width, image.scale)
+            let broad = image.broad.as_ref().map_or(String::new(), |broad| {
+                format!(", broad lines {:.1} wide", broad.line_width * image.scale / broad.scale)
+            });
+            let (width, scale) = (image.line_width, image.scale);
+            format!("{ink} ink pixels, lines {width:.1} wide{broad}, scale {scale:.2}, {solids} solids")
         });
         self.draw(|debug| debug.on_line_image(image))
     }
