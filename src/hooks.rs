@@ -25,7 +25,8 @@ pub trait Observer {
     fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
         Ok(())
     }
-    /// After estimation, or with the caller's own field.
+    /// After estimation, or with the caller's own field: where lines are too broad to be traced beside others, first for
+    /// the image of the broad ones ([`LineImage::broad`]), then for the rest. So are their streamlines.
     #[allow(missing_docs, clippy::missing_errors_doc)]
     fn on_field(&mut self, image: &LineImage, field: &mut PolyVectorField) -> Result<()> {
         Ok(())
@@ -35,7 +36,7 @@ pub trait Observer {
     fn on_streamline(&mut self, image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
         Ok(true)
     }
-    /// After the streamlines have become a graph.
+    /// After the streamlines, of fine lines and of broad ones, have become a graph.
     #[allow(clippy::missing_errors_doc)]
     fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {
         Ok(())

@@ -26,7 +26,7 @@
 //! | stage | result | what holds |
 //! |---|---|---|
 //! | [`load`] | [`load::Scan`] | upright, alpha over white, at least one pixel and at most the limit, resolution kept |
-//! | [`clean`] | [`clean::LineImage`] | dark on light, evenly lit, no specks; anti-aliased edges kept; the line width is known and no region much wider than it is left in the mask; on a page in colour, every ink is measured against its own strength |
+//! | [`clean`] | [`clean::LineImage`] | dark on light, evenly lit, no specks; anti-aliased edges kept; the line width is known and no region much wider than it is left in the mask, and long even ones are an image of broad lines; on a page in colour, every ink is measured against its own strength |
 //! | [`estimate`] | [`field::PolyVectorField`] | defined on the mask; values that are not finite count as undefined |
 //! | decode | [`field::FrameField`] | unit directions; which root is `u` means nothing from one pixel to the next |
 //! | [`streamline`] | [`streamline::Streamline`]s | points half a pixel apart in the middle of the ink; no ink is covered twice in one direction |

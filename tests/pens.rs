@@ -196,12 +196,12 @@ fn same_frame(&((_, broad), _): &((f64, f64), f64), truth: &Drawing, traced: &Dr
 #[test]
 fn fine_lines_end_on_a_broad_frame_and_cross_it() {
     let draw = |&((fine, broad), turn): &((f64, f64), f64)| framed(fine, broad, turn);
-    figures("fine lines in a broad frame", 0.9, &frames(), draw, same_frame);
+    figures("fine lines in a broad frame", 0.866, &frames(), draw, same_frame);
 }
 
 #[test]
 fn fine_lines_end_on_a_broad_frame_in_ink_on_paper_too() {
     let draw = |&((fine, broad), turn): &((f64, f64), f64)| framed(fine, broad, turn);
     let scan = |_: &((f64, f64), f64), drawing: &Drawing| on_paper(drawing, Paper::INK, 5);
-    figures_on("fine lines in a broad frame on paper", 0.5, &frames(), draw, scan, same_frame);
+    figures_on("fine lines in a broad frame on paper", 0.8, &frames(), draw, scan, same_frame);
 }

@@ -111,7 +111,7 @@ pub(crate) fn unblurred_width(measured: f64, blur: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::width::{line_width, ridge_widths};
+    use super::super::width::Ridge;
     use super::*;
 
     #[test]
@@ -138,7 +138,7 @@ mod tests {
             });
             let mask = ink.map(|i| i > 0.5 * profile_at(0.0, width, blur) as f32);
             let depth = super::super::distance::distance(&mask);
-            let measured = line_width(&ridge_widths(&ink, &mask, &depth));
+            let measured = Ridge::of(&ink, &mask, &depth).line_width();
             let found = estimate(&ink, &mask, &depth, measured);
             let restored = unblurred_width(measured, found);
             assert!((restored - width).abs() < 0.25, "{width} {blur}: {found} {restored}");

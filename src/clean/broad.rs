@@ -2,7 +2,8 @@
 
 use super::distance::distance;
 use super::resample::Resampling;
-use super::{DARKEST, LineImage, blur, measured, threshold, width};
+use super::width::Ridge;
+use super::{DARKEST, LineImage, blur, threshold};
 use crate::raster::{Mask, Raster};
 use rayon::prelude::*;
 
@@ -31,13 +32,14 @@ pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise:
 pub(super) fn image(mut ink: Raster<f32>, mut mask: Mask, fine: &LineImage) -> LineImage {
     let noise = fine.noise;
     let mut depth = distance(&mask);
-    let widths = width::ridge_widths(&ink, &mask, &depth);
-    let mut line_width = width::line_width(&widths);
-    let resampling = Resampling::of(mask.size(), noise, &widths, line_width);
+    let ridge = Ridge::of(&ink, &mask, &depth);
+    let mut line_width = ridge.median_width();
+    let resampling = Resampling::of(&ridge, mask.size(), noise, line_width);
     if resampling.scale != 1.0 {
         ink = resampling.apply(ink, &depth);
         mask = ink.mapped(false, |i| i > threshold::level(noise));
-        (depth, line_width) = measured(&ink, &mask);
+        depth = distance(&mask);
+        line_width = Ridge::of(&ink, &mask, &depth).median_width();
     }
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { resampling.blur() };
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));

@@ -33,6 +33,7 @@ use rayon::prelude::*;
 use resample::Resampling;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
+use width::Ridge;
 
 /// The ink of a drawing, evenly lit and at a size that the later stages know.
 #[derive(Clone, Debug)]
@@ -190,9 +191,9 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     };
     let mut depth = distance(&mask);
     cancel.check()?;
-    let widths = width::ridge_widths(&ink, &mask, &depth);
-    let mut line_width = width::line_width(&widths);
-    let resampling = Resampling::of(mask.size(), noise, &widths, line_width);
+    let ridge = Ridge::of(&ink, &mask, &depth);
+    let mut line_width = ridge.line_width();
+    let resampling = Resampling::of(&ridge, mask.size(), noise, line_width);
     let scale = resampling.scale;
     if scale != 1.0 {
         ink = resampling.apply(ink, &depth);
@@ -230,7 +231,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
 /// Depth of the mask and typical width of its lines.
 fn measured(ink: &Raster<f32>, mask: &Mask) -> (Raster<f32>, f64) {
     let depth = distance(mask);
-    let line_width = width::line_width(&width::ridge_widths(ink, mask, &depth));
+    let line_width = Ridge::of(ink, mask, &depth).line_width();
     (depth, line_width)
 }
 

@@ -2,6 +2,7 @@
 
 use super::distance::distance;
 use super::smooth;
+use super::width::Ridge;
 use crate::raster::{Mask, Raster};
 use image::imageops::{FilterType, resize as resize_image};
 use kurbo::Point;
@@ -18,12 +19,17 @@ const ENLARGE_LIMIT: usize = 30_000_000;
 /// Standard deviation, in pixels of the enlarged raster, of the blur that takes the staircase of pixels out of a clean
 /// render's lines that are hardly wider than a pixel.
 const SOFTENING: f64 = 0.8;
-/// Lines that measure less than this many pixels are hairlines, whose ink may fill no pixel,
+/// Lines that measure less than this many pixels are hairlines, as are those with less ink in their middle than this: they
+/// fill no pixel,
 const HAIRLINE: f64 = 1.7;
+const FULL: f32 = 0.75;
 /// and this is theirs.
 const SOFTENING_OF_HAIRLINES: f64 = 1.0;
 /// Standard deviation of the blur that an enlarged hairline has anyway: of a pixel's own square and of interpolation.
 const INTERPOLATED: f64 = 0.82;
+
+/// The finest lines of a drawing are one in so many.
+const FINEST: usize = 8;
 
 /// How a drawing is resampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,13 +48,15 @@ enum Thin {
 }
 
 impl Resampling {
-    /// What suits a drawing of a size, from its grain and the sorted widths of its lines; none for most.
-    pub fn of((width, height): (usize, usize), noise: f64, widths: &[f64], line_width: f64) -> Self {
+    /// What suits a drawing, from its grain, the sorted widths of its lines and the ink on their ridge; none for most.
+    pub fn of(ridge: &Ridge, (width, height): (usize, usize), noise: f64, line_width: f64) -> Self {
         let by = |scale: f64| Self { scale, smoothed: None };
+        let widths = &ridge.widths;
         let thin = if noise > 0.0 { THIN_ON_SCAN } else { THIN };
         if line_width < thin && 4 * width * height <= ENLARGE_LIMIT {
-            let finest = widths.get(widths.len() / 8).copied().unwrap_or(line_width);
-            let kind = if finest < HAIRLINE { Thin::Hairline } else { Thin::Line };
+            let finest = widths.get(widths.len() / FINEST).copied().unwrap_or(line_width);
+            let faint = ridge.ink.get(ridge.ink.len() / FINEST).is_some_and(|&ink| ink < FULL);
+            let kind = if finest < HAIRLINE || faint { Thin::Hairline } else { Thin::Line };
             return Self { scale: 2.0, smoothed: (noise == 0.0).then_some(kind) };
         }
         let Some(&thin) = widths.get(widths.len() / 10) else { return by(1.0) };

@@ -12,6 +12,9 @@ const SAMPLES: usize = 4000;
 /// Directions tried across a line; the narrowest is within 2 % of the true width.
 const DIRECTIONS: usize = 8;
 
+/// Lines are fine among broad ones when they are at least this share of all.
+const FINE_SHARE: f64 = 0.12;
+
 /// Whether a pixel lies on the medial ridge of the mask: no neighbour is deeper.
 pub(crate) fn is_ridge(depth: &Raster<f32>, x: usize, y: usize) -> bool {
     let here = depth[(x, y)];
@@ -32,17 +35,41 @@ pub(super) fn ridge_pixels(mask: &Mask, depth: &Raster<f32>) -> Vec<(usize, usiz
     (0..mask.height()).into_par_iter().flat_map_iter(of_row).collect()
 }
 
-/// Ink widths at places spread over the ridge, sorted: the narrowest of the cross profiles at each.
-pub(super) fn ridge_widths(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>) -> Vec<f64> {
-    let ridge = ridge_pixels(mask, depth);
-    let sampled = ridge.par_iter().step_by((ridge.len() / SAMPLES).max(1));
-    let width = |&(x, y): &(usize, usize)| {
-        let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
-        Some(narrowest_direction(ink, centre, depth[(x, y)])?.1)
-    };
-    let mut widths: Vec<f64> = sampled.filter_map(width).collect();
-    widths.sort_by(f64::total_cmp);
-    widths
+/// What is measured at places spread over the ridge, each sorted.
+pub(super) struct Ridge {
+    /// Ink widths in pixels: the narrowest of the cross profiles at each place.
+    pub widths: Vec<f64>,
+    /// The ink itself.
+    pub ink: Vec<f32>,
+}
+
+impl Ridge {
+    /// Measures the ridge of a mask of some depth.
+    pub fn of(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>) -> Self {
+        let ridge = ridge_pixels(mask, depth);
+        let sampled = ridge.par_iter().step_by((ridge.len() / SAMPLES).max(1));
+        let width = |&(x, y): &(usize, usize)| {
+            let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            Some((narrowest_direction(ink, centre, depth[(x, y)])?.1, ink[(x, y)]))
+        };
+        let (mut widths, mut ink): (Vec<f64>, Vec<f32>) = sampled.filter_map(width).unzip();
+        widths.sort_by(f64::total_cmp);
+        ink.sort_by(f32::total_cmp);
+        Self { widths, ink }
+    }
+
+    /// The median width in pixels; 1 without ink.
+    pub fn median_width(&self) -> f64 {
+        self.widths.get(self.widths.len() / 2).copied().unwrap_or(1.0)
+    }
+
+    /// Typical line width in pixels: the median, or, where most lines are too broad to be traced beside fine ones, that
+    /// of the fine ones; 1 without ink.
+    pub fn line_width(&self) -> f64 {
+        let median = self.median_width();
+        let fine = self.widths.partition_point(|&width| half_width_of_wide(width) < 0.5 * median);
+        if fine as f64 > FINE_SHARE * self.widths.len() as f64 { self.widths[fine / 2] } else { median }
+    }
 }
 
 /// The direction in which the ink at a ridge point is narrowest, and its width there.
@@ -54,15 +81,4 @@ pub(super) fn narrowest_direction(ink: &Raster<f32>, p: Point, depth: f32) -> Op
             Some((direction, cross_profile(ink, p, direction, reach)?.width()?))
         })
         .min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// Lines are fine among broad ones when they are at least this share of all.
-const FINE_SHARE: f64 = 0.12;
-
-/// Typical line width in pixels: the median of the sorted widths on the ridge, or, where most lines are too broad to be
-/// traced beside fine ones, that of the fine ones; 1 without ink.
-pub(super) fn line_width(widths: &[f64]) -> f64 {
-    let Some(&median) = widths.get(widths.len() / 2) else { return 1.0 };
-    let fine = widths.partition_point(|&width| half_width_of_wide(width) < 0.5 * median);
-    if fine as f64 >= FINE_SHARE * widths.len() as f64 { widths[fine / 2] } else { median }
 }
