@@ -11,6 +11,8 @@ use crate::drawing::Dashes;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Affine, Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
 use std::collections::BTreeMap;
 
 /// An end lies at a broad line's edge if it is no further from its rim than this many fine line widths.
@@ -155,15 +157,22 @@ impl Finder<'_> {
     /// Pairs of ends at the edges of broad lines where one line goes under and comes out, the best first, and where it
     /// crosses the middle.
     fn passages(&self, at_edge: &[usize]) -> Vec<([usize; 2], Place, Point)> {
+        let places = at_edge.iter().filter_map(|&end| {
+            let p = self.ends[end].as_ref()?.point;
+            Some(GeomWithData::new([p.x, p.y], end))
+        });
+        let tree = RTree::bulk_load(places.collect());
         let mut found = Vec::new();
-        for (k, &i) in at_edge.iter().enumerate() {
-            for &j in &at_edge[k + 1..] {
-                let (Some(a), Some(b), Some(width)) = (&self.ends[i], &self.ends[j], self.body(i)) else { continue };
+        for &i in at_edge {
+            let (Some(a), Some(width)) = (&self.ends[i], self.body(i)) else { continue };
+            let near = tree.locate_within_distance([a.point.x, a.point.y], (2.0 * UNDER * width).powi(2));
+            for j in near.map(|near| near.data).filter(|&j| j > i) {
+                let Some(b) = &self.ends[j] else { continue };
                 let distance = (b.point - a.point).hypot();
                 let same_pen = self.fine.trails[i / 2].color == self.fine.trails[j / 2].color;
                 // The two ends of one stroke close it only when it is far longer than what is under the line.
                 let closes = i / 2 == j / 2 && a.length < 4.0 * distance;
-                if distance > 2.0 * UNDER * width || !same_pen || closes {
+                if !same_pen || closes {
                     continue;
                 }
                 if let Some(misfit) = facing(a, b, self.fine.page.line_width)
