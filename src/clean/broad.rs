@@ -10,9 +10,8 @@ use rayon::prelude::*;
 /// How far beyond its mask the ink of a broad line reaches, in pixels.
 pub(crate) const RIM: f64 = 2.0;
 
-/// Takes the ink of broad lines, a region that is not in the mask, and of its rim, in which fine lines end. Returns it with
-/// its mask.
-pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise: f64) -> (Raster<f32>, Mask) {
+/// Takes the ink of broad lines, a region that is not in the mask, and of its rim, in which fine lines end.
+pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise: f64) -> Raster<f32> {
     let level = threshold::level(noise);
     let to_region = distance(&region.mapped(false, |inside| !inside));
     let mut broad = Raster::filled(region.width(), region.height(), 0.0);
@@ -25,7 +24,7 @@ pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise:
             (*fine, *mask) = (0.0, false);
         }
     }
-    (broad, region.clone())
+    broad
 }
 
 /// The image of broad lines that were taken from another.

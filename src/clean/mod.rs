@@ -213,7 +213,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         false => resampling.blur(),
     };
     let broad = solids::take_broad(&mut mask, &depth, unblurred_width(line_width, blur));
-    let broad = broad.map(|region| broad::take(&mut ink, &mut mask, &region, noise));
+    let broad = broad.map(|region| (broad::take(&mut ink, &mut mask, &region, noise), region));
     if broad.is_some() {
         depth = distance(&mask);
     }

@@ -41,9 +41,12 @@ pub(super) fn half_width_of_wide(line_width: f64) -> f64 {
 /// Takes broad lines out of the mask and returns where they are; `None` where there are none.
 pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64) -> Option<Mask> {
     let radius = half_width_of_wide(line_width);
+    if !is_deeper(depth, radius) {
+        return None;
+    }
     let ridge = ridge_pixels(mask, depth);
     let deep = ridge.iter().filter(|&&p| f64::from(depth[p]) > radius).count();
-    if deep == 0 || (deep as f64) < BROAD_SHARE * ridge.len() as f64 {
+    if (deep as f64) < BROAD_SHARE * ridge.len() as f64 {
         return None;
     }
     let (region, labels, count) = regions(mask, depth, radius, line_width);
@@ -60,7 +63,7 @@ pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64) 
 /// Takes the solid regions out of the mask and returns their outlines.
 pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line_width: f64) -> Vec<Fill> {
     let radius = half_width_of_wide(line_width);
-    if !depth.data().iter().any(|&d| f64::from(d) > radius) {
+    if !is_deeper(depth, radius) {
         return Vec::new();
     }
     let (_, labels, count) = regions(mask, depth, radius, line_width);
@@ -73,6 +76,11 @@ pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line
     let fills = fills.collect();
     labels.iter().zip(mask.data_mut()).for_each(|(label, ink)| *ink &= !solid[*label as usize]);
     fills
+}
+
+/// Whether the ink is deeper than a radius somewhere.
+fn is_deeper(depth: &Raster<f32>, radius: f64) -> bool {
+    depth.data().iter().any(|&d| f64::from(d) > radius)
 }
 
 /// The regions into which a disc of a radius fits, with their corners: their pixels, the number of each, and how many.

@@ -50,7 +50,7 @@ pub(super) struct FreeEnd {
     pub course: Tail,
     width: f64,
     /// Length of its stroke.
-    pub length: f64,
+    length: f64,
 }
 
 /// Two ends that face each other, and how badly.
@@ -95,17 +95,12 @@ struct Finder<'a> {
 
 impl<'a> Finder<'a> {
     fn new(image: &'a LineImage, graph: &'a StrokeGraph) -> Self {
-        let ends = graph.trails.iter().flat_map(|trail| [0, 1].map(|side| free_end(graph, trail, side))).collect();
-        Self { image, graph, points: points_of_edges(graph), ends }
+        Self { image, graph, points: points_of_edges(graph), ends: free_ends(graph) }
     }
 
     /// Pairs of ends that face each other over at most `reach` pixels of paper, each end in one pair: the best first.
     fn links(&self, reach: f64) -> Vec<Link> {
-        let places = self.ends.iter().enumerate().filter_map(|(i, end)| {
-            let p = end.as_ref()?.point;
-            Some(GeomWithData::new([p.x, p.y], i))
-        });
-        let tree = RTree::bulk_load(places.collect());
+        let tree = tree_of(&self.ends, 0..self.ends.len());
         let mut candidates = Vec::new();
         for (a, end) in self.ends.iter().enumerate() {
             let Some(end) = end else { continue };
@@ -115,14 +110,7 @@ impl<'a> Finder<'a> {
                 .extend(near.filter(|b| b.data > a).filter_map(|b| self.link(a, b.data)).filter(|l| l.paper <= reach));
         }
         candidates.sort_by(|x, y| (x.paper + x.misfit).total_cmp(&(y.paper + y.misfit)).then(x.ends.cmp(&y.ends)));
-        let mut taken = vec![false; self.ends.len()];
-        candidates.retain(|link| {
-            let free = link.ends.iter().all(|&e| !taken[e]);
-            if free {
-                link.ends.iter().for_each(|&e| taken[e] = true);
-            }
-            free
-        });
+        retain_first(&mut candidates, self.ends.len(), |link| link.ends);
         candidates
     }
 
@@ -133,14 +121,7 @@ impl<'a> Finder<'a> {
         if a.width.max(b.width) > WIDTHS * a.width.min(b.width) || distance < 1e-6 {
             return None;
         }
-        if self.graph.trails[i / 2].color != self.graph.trails[j / 2].color {
-            return None;
-        }
-        // The two ends of one stroke close it only when it is far longer than the gap.
-        if i / 2 == j / 2 && a.length < 4.0 * distance {
-            return None;
-        }
-        let misfit = facing(a, b, self.image.line_width)?;
+        let misfit = facing(self.graph, &self.ends, [i, j])?;
         let link = Link { ends: [i, j], paper: (distance - width).max(0.0), misfit };
         self.is_paper(a, b).then_some(link)
     }
@@ -261,9 +242,41 @@ fn is_even(values: &[f64]) -> bool {
     values.iter().all(|v| (v - middle).abs() <= unevenness(middle))
 }
 
-/// How far two ends lie beside each other's course, if they agree: one line with a gap.
-pub(super) fn facing(a: &FreeEnd, b: &FreeEnd, line_width: f64) -> Option<f64> {
+/// The ends of all strokes, two for each: where it starts and where it ends; `None` where that is not in the open.
+pub(super) fn free_ends(graph: &StrokeGraph) -> Vec<Option<FreeEnd>> {
+    graph.trails.iter().flat_map(|trail| [0, 1].map(|side| free_end(graph, trail, side))).collect()
+}
+
+/// Some of the ends, findable by place.
+pub(super) fn tree_of(
+    ends: &[Option<FreeEnd>],
+    some: impl Iterator<Item = usize>,
+) -> RTree<GeomWithData<[f64; 2], usize>> {
+    let place = |i: usize| ends[i].as_ref().map(|end| GeomWithData::new([end.point.x, end.point.y], i));
+    RTree::bulk_load(some.filter_map(place).collect())
+}
+
+/// Keeps of pairs of ends, of which there are `count`, those whose ends are in none before them.
+pub(super) fn retain_first<T>(pairs: &mut Vec<T>, count: usize, ends: impl Fn(&T) -> [usize; 2]) {
+    let mut taken = vec![false; count];
+    pairs.retain(|pair| {
+        let free = ends(pair).iter().all(|&end| !taken[end]);
+        if free {
+            ends(pair).into_iter().for_each(|end| taken[end] = true);
+        }
+        free
+    });
+}
+
+/// How far two ends lie beside each other's course, if they agree: one line of one pen with a gap.
+pub(super) fn facing(graph: &StrokeGraph, ends: &[Option<FreeEnd>], [i, j]: [usize; 2]) -> Option<f64> {
+    let (a, b) = (ends[i].as_ref()?, ends[j].as_ref()?);
     let distance = (b.point - a.point).hypot();
+    // The two ends of one stroke close it only when it is far longer than the gap.
+    let closes = i / 2 == j / 2 && a.length < 4.0 * distance;
+    if closes || graph.trails[i / 2].color != graph.trails[j / 2].color {
+        return None;
+    }
     let beside = |from: &FreeEnd, to: &FreeEnd| {
         let d = to.point - from.point;
         let s = d.dot(from.course.heading);
@@ -274,11 +287,11 @@ pub(super) fn facing(a: &FreeEnd, b: &FreeEnd, line_width: f64) -> Option<f64> {
     // Both head into the gap, so the second curves the other way.
     let bend = 0.5 * (a.course.curvature - b.course.curvature) * distance;
     let turn = angle_between(a.course.heading, -b.course.heading) - bend;
-    (misfit <= BESIDE * line_width + BESIDE_SHARE * distance && turn.abs() <= TURN).then_some(misfit)
+    (misfit <= BESIDE * graph.page.line_width + BESIDE_SHARE * distance && turn.abs() <= TURN).then_some(misfit)
 }
 
 /// The end of a stroke at its start (0) or its last point (1), where it is in the open.
-pub(super) fn free_end(graph: &StrokeGraph, trail: &Trail, side: usize) -> Option<FreeEnd> {
+fn free_end(graph: &StrokeGraph, trail: &Trail, side: usize) -> Option<FreeEnd> {
     if trail.closed {
         return None;
     }
@@ -357,12 +370,7 @@ fn join_trails(graph: &mut StrokeGraph, ends: &[Option<FreeEnd>], seams: &[(Link
     for chain in chains(trails.len(), &partner) {
         let mut joined = Trail { edges: Vec::new(), ..trails[chain[0].0].clone() };
         for &(stroke, backwards) in &chain {
-            let edges = &trails[stroke].edges;
-            if backwards {
-                joined.edges.extend(edges.iter().rev().map(|&(e, reversed)| (e, !reversed)));
-            } else {
-                joined.edges.extend(edges);
-            }
+            joined.append(&trails[stroke], backwards);
             let exit = 2 * stroke + usize::from(!backwards);
             let Some((entry, link)) = partner[exit] else { continue };
             let (Some(from), Some(to)) = (&ends[exit], &ends[entry]) else { continue };

@@ -4,15 +4,13 @@
 //! line that crosses; what ends at the broad line's edge is drawn out to its middle, as a pen would have been.
 
 use super::contacts::{LineIndex, Place, width_at};
-use super::gaps::{FreeEnd, chains, facing, free_end};
+use super::gaps::{FreeEnd, chains, facing, free_ends, retain_first, tree_of};
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::RIM;
 use crate::drawing::Dashes;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Affine, Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 use std::collections::BTreeMap;
 
 /// An end lies at a broad line's edge if it is no further from its rim than this many fine line widths.
@@ -87,23 +85,25 @@ struct Meetings {
 
 impl Meetings {
     fn of(fine: &StrokeGraph, broad: &[Streamline], broad_width: f64, out: &mut StrokeGraph) -> Self {
-        let ends: Vec<Option<FreeEnd>> =
-            fine.trails.iter().flat_map(|trail| [0, 1].map(|side| free_end(fine, trail, side))).collect();
-        let finder = Finder { fine, broad, broad_width, index: LineIndex::new(broad), ends };
+        let finder = Finder { fine, broad, broad_width, index: LineIndex::new(broad), ends: free_ends(fine) };
         let mut found = Self {
             nodes: BTreeMap::new(),
             on_fine: BTreeMap::new(),
             on_broad: BTreeMap::new(),
             partner: vec![None; finder.ends.len()],
         };
-        let at_edge: Vec<usize> = (0..finder.ends.len()).filter(|&end| finder.body(end).is_some()).collect();
+        let at_edge: Vec<(usize, f64)> =
+            (0..finder.ends.len()).filter_map(|end| Some((end, finder.body(end)?))).collect();
         for (number, ([a, b], place, point)) in finder.passages(&at_edge).into_iter().enumerate() {
             let node = found.add(out, JunctionKind::Crossing, place, point);
             (found.partner[a], found.partner[b]) = (Some((b, number)), Some((a, number)));
             found.nodes.extend([a, b].into_iter().flat_map(|end| &finder.ends[end]).map(|end| (end.node, node)));
         }
-        for end in at_edge.into_iter().filter(|&end| found.partner[end].is_none()).collect::<Vec<_>>() {
-            if let (Some((place, point)), Some(end)) = (finder.foot(end), &finder.ends[end]) {
+        for (end, width) in at_edge {
+            if found.partner[end].is_none()
+                && let Some(end) = &finder.ends[end]
+                && let Some((place, point)) = finder.foot(end, width)
+            {
                 let node = found.add(out, JunctionKind::Tee, place, point);
                 found.nodes.insert(end.node, node);
             }
@@ -148,47 +148,30 @@ impl Finder<'_> {
         crossings.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(place, point, _)| (place, point))
     }
 
-    /// Where an end at the edge of a broad line, drawn out, comes to its middle.
-    fn foot(&self, end: usize) -> Option<(Place, Point)> {
-        let (width, end) = (self.body(end)?, self.ends[end].as_ref()?);
+    /// Where an end at the edge of a broad line of some width, drawn out, comes to its middle.
+    fn foot(&self, end: &FreeEnd, width: f64) -> Option<(Place, Point)> {
         self.first_crossing(Line::new(end.aim, end.aim + end.course.heading * (UNDER * width)))
     }
 
-    /// Pairs of ends at the edges of broad lines where one line goes under and comes out, the best first, and where it
-    /// crosses the middle.
-    fn passages(&self, at_edge: &[usize]) -> Vec<([usize; 2], Place, Point)> {
-        let places = at_edge.iter().filter_map(|&end| {
-            let p = self.ends[end].as_ref()?.point;
-            Some(GeomWithData::new([p.x, p.y], end))
-        });
-        let tree = RTree::bulk_load(places.collect());
+    /// Pairs of ends at the edges of broad lines, given with their widths, where one line goes under and comes out, the best
+    /// first, and where it crosses the middle.
+    fn passages(&self, at_edge: &[(usize, f64)]) -> Vec<([usize; 2], Place, Point)> {
+        let tree = tree_of(&self.ends, at_edge.iter().map(|&(end, _)| end));
         let mut found = Vec::new();
-        for &i in at_edge {
-            let (Some(a), Some(width)) = (&self.ends[i], self.body(i)) else { continue };
+        for &(i, width) in at_edge {
+            let Some(a) = &self.ends[i] else { continue };
             let near = tree.locate_within_distance([a.point.x, a.point.y], (2.0 * UNDER * width).powi(2));
             for j in near.map(|near| near.data).filter(|&j| j > i) {
-                let Some(b) = &self.ends[j] else { continue };
-                let distance = (b.point - a.point).hypot();
-                let same_pen = self.fine.trails[i / 2].color == self.fine.trails[j / 2].color;
-                // The two ends of one stroke close it only when it is far longer than what is under the line.
-                let closes = i / 2 == j / 2 && a.length < 4.0 * distance;
-                if !same_pen || closes {
-                    continue;
-                }
-                if let Some(misfit) = facing(a, b, self.fine.page.line_width)
+                if let Some(b) = &self.ends[j]
+                    && let Some(misfit) = facing(self.fine, &self.ends, [i, j])
                     && let Some((place, point)) = self.first_crossing(Line::new(a.aim, b.aim))
                 {
-                    found.push((distance + misfit, [i, j], place, point));
+                    found.push(((b.point - a.point).hypot() + misfit, [i, j], place, point));
                 }
             }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let mut taken = vec![false; self.ends.len()];
-        found.retain(|(_, ends, ..)| {
-            let free = !ends.iter().any(|&end| taken[end]);
-            ends.iter().for_each(|&end| taken[end] |= free);
-            free
-        });
+        retain_first(&mut found, self.ends.len(), |found| found.1);
         found.into_iter().map(|(_, ends, place, point)| (ends, place, point)).collect()
     }
 
@@ -278,12 +261,7 @@ fn piece(edge: &Edge, from: Cut, to: Cut, out: &StrokeGraph) -> Edge {
 fn chained(trails: &[Trail], chain: &[(usize, bool)]) -> Trail {
     let mut joined = Trail { edges: Vec::new(), ..trails[chain[0].0].clone() };
     for &(stroke, backwards) in chain {
-        let edges = &trails[stroke].edges;
-        if backwards {
-            joined.edges.extend(edges.iter().rev().map(|&(edge, reversed)| (edge, !reversed)));
-        } else {
-            joined.edges.extend(edges);
-        }
+        joined.append(&trails[stroke], backwards);
     }
     joined
 }

@@ -97,6 +97,17 @@ pub struct Trail {
     pub dashes: Option<Dashes>,
 }
 
+impl Trail {
+    /// Goes on along another trail, from its end if `backwards`.
+    fn append(&mut self, other: &Self, backwards: bool) {
+        if backwards {
+            self.edges.extend(other.edges.iter().rev().map(|&(edge, reversed)| (edge, !reversed)));
+        } else {
+            self.edges.extend(&other.edges);
+        }
+    }
+}
+
 /// A blob of about a line width in both directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dot {
