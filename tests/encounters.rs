@@ -64,7 +64,7 @@ fn a_crossing_beside_a_crossing_is_three_straight_strokes() {
     let cases = pairs(&pairs(&pairs(&apart, &slants), &WIDTHS[..4]), &TURNS);
     figures(
         "twin crossings",
-        0.883,
+        0.925,
         &cases,
         |&(((apart, slants), width), turn)| {
             let at = |side: f64| polar(CENTER, turn, side * 0.5 * apart * width);
@@ -104,7 +104,7 @@ fn a_line_through_a_corner_stays_one_straight_stroke() {
     let cases = pairs(&pairs(&pairs(&[60.0, 90.0, 120.0], &[90.0, 75.0, 0.0]), &WIDTHS), &TURNS);
     figures(
         "lines through corners",
-        0.859,
+        0.911,
         &cases,
         |&(((opening, slant), width), turn)| {
             let arm = |side: f64| polar(CENTER, turn + side * 0.5 * opening, 50.0);

@@ -3,6 +3,7 @@
 use crate::clean::LineImage;
 use crate::raster::{Mask, Raster, floor};
 use kurbo::{Point, Vec2};
+use std::ops::Range;
 
 /// Side of a grid cell in pixels.
 const CELL: f64 = 4.0;
@@ -62,6 +63,19 @@ impl<'a> Coverage<'a> {
             let cell = &mut self.cells[(x as usize, y as usize)];
             self.marks.push((mark, *cell));
             *cell = self.marks.len() as u32 - 1;
+        }
+    }
+
+    /// Gives the points `marks` to another streamline, in this order or, if `backwards`, the other; the first of them is its
+    /// point `index`, and `sign` says whether it counts up or down.
+    pub fn hand_over(&mut self, marks: Range<usize>, backwards: bool, streamline: u32, index: i32, sign: i32) {
+        let last = marks.len() as i32 - 1;
+        for (k, (mark, _)) in self.marks[marks].iter_mut().enumerate() {
+            let k = if backwards { last - k as i32 } else { k as i32 };
+            // Headings are those of the walk from the seed's side.
+            let turned = backwards != (sign < 0);
+            let heading = if turned { -mark.heading } else { mark.heading };
+            *mark = Mark { streamline, index: index + sign * k, heading, ..*mark };
         }
     }
 

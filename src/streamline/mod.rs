@@ -3,14 +3,16 @@
 //! Direction comes from the field, position from the ink: a walk follows the root nearest to its heading and is
 //! pulled back to the middle of the ink at each step, except inside junctions, where the cross profile says
 //! nothing about the line that is being followed. A streamline covers ink for its own direction only, so others
-//! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own). Ink that no
-//! streamline covers in the end gets seeds of its own, so that nothing is lost.
+//! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own). Long straight
+//! lines that others end at cover their ink before any walk begins. Ink that no streamline covers in the end gets seeds of
+//! its own, so that nothing is lost.
 
 mod coverage;
 pub(crate) mod heading;
 mod islands;
 mod relax;
 mod seeds;
+mod straight;
 mod walk;
 
 pub(crate) use heading::{Tail, angle_between};
@@ -24,6 +26,7 @@ use islands::Island;
 use kurbo::Point;
 use rayon::prelude::*;
 use seeds::Seed;
+use straight::Straights;
 use walk::Walker;
 
 /// Why a walk stopped.
@@ -114,7 +117,12 @@ fn trace_island(
     cancel: &Cancel,
 ) -> Result<Vec<(usize, Streamline)>> {
     let coverage = Coverage::new(image, island.bounds, ink_pixels);
-    let mut tracing = Tracing { image, frames, coverage, streamlines: Vec::new() };
+    let mut tracing = Tracing { image, frames, coverage, straights: Straights::default(), streamlines: Vec::new() };
+    tracing.lay_straights(&island.seeds);
+    for id in 0..tracing.straights.len() {
+        cancel.check()?;
+        tracing.extend(id);
+    }
     for (rank, seed) in &island.seeds {
         cancel.check()?;
         tracing.sow(*rank, seed);
@@ -133,10 +141,31 @@ struct Tracing<'a> {
     image: &'a LineImage,
     frames: &'a FrameField,
     coverage: Coverage<'a>,
+    straights: Straights,
     streamlines: Vec<(usize, Streamline)>,
 }
 
 impl Tracing<'_> {
+    /// Lays the long straight lines through seeds over their ink, where it is not covered yet.
+    fn lay_straights(&mut self, seeds: &[(usize, Seed)]) {
+        for (rank, seed) in seeds {
+            if !self.coverage.is_painted(seed.point) {
+                self.straights.lay(self.image, &mut self.coverage, *rank, seed);
+            }
+        }
+    }
+
+    /// Traces the line that a straight line is part of, unless that is traced already.
+    fn extend(&mut self, id: usize) {
+        let Some((rank, straight)) = self.straights.take(id) else { return };
+        let mut walker = Walker::new(self.image, self.frames, &mut self.coverage, &mut self.straights, id as u32);
+        let mut streamline = walker.extend(&straight);
+        let width = walker.width();
+        relax::relax(self.image, &mut streamline, width);
+        self.coverage.paint(&streamline.points, &streamline.widths);
+        self.streamlines.push((rank, streamline));
+    }
+
     /// Traces the line through a seed, unless its ink is covered.
     fn sow(&mut self, rank: usize, seed: &Seed) {
         let image = self.image;
@@ -144,7 +173,8 @@ impl Tracing<'_> {
             return;
         }
         let before = self.coverage.len();
-        let mut walker = Walker::new(image, self.frames, &mut self.coverage, self.streamlines.len() as u32);
+        let id = self.straights.len() + self.streamlines.len();
+        let mut walker = Walker::new(image, self.frames, &mut self.coverage, &mut self.straights, id as u32);
         let mut streamline = walker.trace(seed);
         let width = walker.width();
         relax::relax(image, &mut streamline, width);

@@ -3,6 +3,7 @@
 use super::coverage::{Coverage, Mark};
 use super::heading::{Tail, angle_between, turned};
 use super::seeds::Seed;
+use super::straight::{Comer, Straight, Straights};
 use super::{STEP, Stop, Streamline};
 use crate::clean::LineImage;
 use crate::field::FrameField;
@@ -27,6 +28,10 @@ const COAST_COVERED: f64 = 8.0;
 
 /// A walk that is back within so many line widths on the line that it ran along has only strayed from it.
 const BACK_IN: f64 = 4.0;
+
+/// A walk is led round for no longer than so many line widths, onto a straight line that it meets at no less than 25 degrees.
+const LED: f64 = 6.0;
+const TEE_COS: f64 = 0.906;
 
 /// On a noisy line, the middle has ended where it has lost this share of its ink.
 const END_NOISY: f32 = 0.5;
@@ -57,6 +62,7 @@ pub(super) struct Walker<'a, 'b> {
     image: &'a LineImage,
     frames: &'a FrameField,
     coverage: &'b mut Coverage<'a>,
+    straights: &'b mut Straights,
     id: u32,
     /// Running estimates of the line's width and of the ink in its middle.
     width: f64,
@@ -64,8 +70,14 @@ pub(super) struct Walker<'a, 'b> {
 }
 
 impl<'a, 'b> Walker<'a, 'b> {
-    pub fn new(image: &'a LineImage, frames: &'a FrameField, coverage: &'b mut Coverage<'a>, id: u32) -> Self {
-        Self { image, frames, coverage, id, width: image.line_width, core: 1.0 }
+    pub fn new(
+        image: &'a LineImage,
+        frames: &'a FrameField,
+        coverage: &'b mut Coverage<'a>,
+        straights: &'b mut Straights,
+        id: u32,
+    ) -> Self {
+        Self { image, frames, coverage, straights, id, width: image.line_width, core: 1.0 }
     }
 
     /// The width of the line at the end of the last walk.
@@ -86,9 +98,22 @@ impl<'a, 'b> Walker<'a, 'b> {
             start += normal * middle;
         }
         self.core = self.image.ink.sample(start).max(0.3);
-        let first = Step { point: start, heading: seed.tangent, width: self.width, drift: 0.0 };
+        self.both_ways(vec![Step { point: start, heading: seed.tangent, width: self.width, drift: 0.0 }])
+    }
+
+    /// A straight line, and where it goes on from its ends.
+    pub fn extend(&mut self, straight: &Straight) -> Streamline {
+        self.width = straight.width;
+        let points = straight.points();
+        let core = points.iter().map(|&p| self.image.ink.sample(p)).sum::<f32>() / points.len() as f32;
+        self.core = core.max(0.3);
+        self.both_ways(along(straight).collect())
+    }
+
+    /// Walks on from the last of `start`, and back from its first.
+    fn both_ways(&mut self, start: Vec<Step>) -> Streamline {
         let width = self.width;
-        let (forward, forward_stop, closed) = self.walk(vec![first], 1);
+        let (forward, forward_stop, closed) = self.walk(start, 1);
         if closed {
             return streamline(&forward, true, [Stop::InkEnd; 2]);
         }
@@ -108,13 +133,17 @@ impl<'a, 'b> Walker<'a, 'b> {
     /// Walks on from the last of `steps`; returns all steps, why it stopped, and whether it closed a loop.
     fn walk(&mut self, mut steps: Vec<Step>, sign: i32) -> (Vec<Step>, Stop, bool) {
         let known = steps.len();
+        // Steps count from the first of the walk forward.
+        let first = if sign > 0 { known as i32 - 1 } else { 0 };
         let limit = 16 * (self.coverage.ink_pixels + 64);
         let mut covered: Option<Covered> = None;
+        // Steps that are no longer taken back.
+        let mut sure = known;
         let (mut free_run, mut covered_run) = (0, 0);
         // The last covered stretch, and where the walk came out of it.
         let mut came_out: Option<(Covered, usize)> = None;
         loop {
-            let index = sign * (steps.len() - known) as i32;
+            let index = first + sign * (steps.len() - known) as i32;
             let here = &steps[steps.len() - 1];
             self.coverage.add(Mark {
                 point: here.point,
@@ -123,16 +152,16 @@ impl<'a, 'b> Walker<'a, 'b> {
                 index,
             });
             let Some(mut next) = self.advance(&steps, covered.is_some()) else {
-                let Some(Covered { from, .. }) = covered else {
+                let Some(Covered { from, beside }) = covered else {
                     let stop = self.stop_at(here.point);
                     if stop == Stop::Solid {
                         let outside = steps.iter().rposition(|s| !self.is_solid(s.point));
-                        steps.truncate(outside.map_or(known, |k| (k + 2).max(known)));
+                        steps.truncate(outside.map_or(sure, |k| (k + 2).max(sure)));
                     }
                     return (steps, stop, false);
                 };
-                steps.truncate(from.max(known));
-                return (steps, Stop::Merged, false);
+                steps.truncate(from.max(sure));
+                return (self.up_to(beside, steps, sure), Stop::Merged, false);
             };
             let covering = self.covering(&next, index);
             if let Some(mark) = covering
@@ -143,6 +172,16 @@ impl<'a, 'b> Walker<'a, 'b> {
                 && covered.is_none()
             {
                 return (steps, Stop::Merged, true);
+            }
+            if covered.is_none()
+                && let Some(mark) = covering
+                && let Some(ahead) =
+                    self.straights.take_in(self.coverage, &mark, &self.comer(&next, index + sign, sign))
+            {
+                steps.extend(along(&ahead));
+                sure = steps.len();
+                (covered_run, came_out) = (0, None);
+                continue;
             }
             covered_run = if covering.is_some() { covered_run + 1 } else { 0 };
             let lasting = f64::from(covered_run) * STEP > self.width;
@@ -168,11 +207,11 @@ impl<'a, 'b> Walker<'a, 'b> {
                 }
                 _ => {}
             }
-            if let Some(Covered { from, .. }) = covered {
+            if let Some(Covered { from, beside }) = covered {
                 next.width = f64::NAN;
                 if (steps.len() - from) as f64 * STEP > COAST_COVERED * self.width {
-                    steps.truncate(from.max(known));
-                    return (steps, Stop::Merged, false);
+                    steps.truncate(from.max(sure));
+                    return (self.up_to(beside, steps, sure), Stop::Merged, false);
                 }
             }
             steps.push(next);
@@ -180,6 +219,35 @@ impl<'a, 'b> Walker<'a, 'b> {
                 return (steps, Stop::Merged, false);
             }
         }
+    }
+
+    /// A walk that ran along the streamline `beside` in the end. If that is a straight line, it has come to it at an angle,
+    /// and was led round on its ink: the line itself goes straight on, over all of it.
+    fn up_to(&self, beside: u32, mut steps: Vec<Step>, sure: usize) -> Vec<Step> {
+        let Some(straight) = self.straights.get(beside) else { return steps };
+        let outside = |s: &Step| straight.distance(s.point) > 0.5 * (straight.width + self.width);
+        let own = steps.iter().rposition(|s| outside(s) && !s.width.is_nan()).map_or(0, |last| last + 1);
+        if own < sure || steps.len() - own > (LED * self.width / STEP) as usize {
+            return steps;
+        }
+        let Some(tail) = self.tail(&steps[..own]) else { return steps };
+        if tail.heading.dot(straight.heading()).abs() > TEE_COS {
+            return steps;
+        }
+        steps.truncate(own);
+        let heading = tail.heading;
+        while let Some(last) = steps.last()
+            && let point = last.point + heading * STEP
+            && self.image.ink.sample(point) >= END_NOISY * self.core
+        {
+            steps.push(Step { point, heading, width: f64::NAN, drift: 0.0 });
+        }
+        steps
+    }
+
+    fn comer(&self, step: &Step, index: i32, sign: i32) -> Comer {
+        let Step { point, heading, .. } = *step;
+        Comer { point, heading, width: self.width, streamline: self.id, index, sign }
     }
 
     /// The point of the same direction that already covers a step, this walk's own latest points aside.
@@ -269,6 +337,12 @@ impl<'a, 'b> Walker<'a, 'b> {
     fn is_solid(&self, p: Point) -> bool {
         self.image.mask.at(p) == Some(false) && self.image.ink.at(p).is_some_and(|ink| ink > 0.6)
     }
+}
+
+/// The steps along a straight line.
+fn along(straight: &Straight) -> impl Iterator<Item = Step> {
+    let (heading, width) = (straight.heading(), straight.width);
+    straight.points().into_iter().map(move |point| Step { point, heading, width, drift: 0.0 })
 }
 
 fn streamline(steps: &[Step], closed: bool, stops: [Stop; 2]) -> Streamline {
