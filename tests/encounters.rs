@@ -104,7 +104,7 @@ fn a_line_through_a_corner_stays_one_straight_stroke() {
     let cases = pairs(&pairs(&pairs(&[60.0, 90.0, 120.0], &[90.0, 75.0, 0.0]), &WIDTHS), &TURNS);
     figures(
         "lines through corners",
-        0.911,
+        0.903,
         &cases,
         |&(((opening, slant), width), turn)| {
             let arm = |side: f64| polar(CENTER, turn + side * 0.5 * opening, 50.0);

@@ -118,7 +118,7 @@ fn trace_island(
 ) -> Result<Vec<(usize, Streamline)>> {
     let coverage = Coverage::new(image, island.bounds, ink_pixels);
     let mut tracing = Tracing { image, frames, coverage, straights: Straights::default(), streamlines: Vec::new() };
-    tracing.lay_straights(&island.seeds);
+    tracing.lay_straights(&island.seeds, cancel)?;
     for id in 0..tracing.straights.len() {
         cancel.check()?;
         tracing.extend(id);
@@ -147,12 +147,14 @@ struct Tracing<'a> {
 
 impl Tracing<'_> {
     /// Lays the long straight lines through seeds over their ink, where it is not covered yet.
-    fn lay_straights(&mut self, seeds: &[(usize, Seed)]) {
+    fn lay_straights(&mut self, seeds: &[(usize, Seed)], cancel: &Cancel) -> Result<()> {
         for (rank, seed) in seeds {
+            cancel.check()?;
             if !self.coverage.is_painted(seed.point) {
                 self.straights.lay(self.image, &mut self.coverage, *rank, seed);
             }
         }
+        Ok(())
     }
 
     /// Traces the line that a straight line is part of, unless that is traced already.

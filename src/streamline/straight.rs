@@ -105,7 +105,7 @@ impl Straights {
         self.laid.len()
     }
 
-    /// Lays the straight line through a seed over its ink, if there is one.
+    /// Lays the straight line through a seed over its ink, if there is one at which others end.
     pub fn lay(&mut self, image: &LineImage, coverage: &mut Coverage, rank: usize, seed: &Seed) {
         if self.seen.contains(&pixel(seed.point)) {
             return;
@@ -222,7 +222,7 @@ fn straight(image: &LineImage, seed: &Seed) -> Option<(Straight, bool)> {
     let close = |s: &&Sample| s.beside.abs() <= CLOSE * axis.width + CLOSE_PIXELS;
     let (first, last) = (samples.iter().find(close)?.along, samples.iter().rev().find(close)?.along);
     let [from, to] = [first + BACK * width, last - BACK * width].map(|s| axis.at(s));
-    is_long.then_some((Straight { from, to, width: axis.width }, is_busy))
+    (is_long && last - first > 0.5 * length).then_some((Straight { from, to, width: axis.width }, is_busy))
 }
 
 impl Axis<'_> {
