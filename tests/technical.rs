@@ -179,7 +179,7 @@ fn framed_hatching(&((gap, angle), width): &((f64, f64), f64)) -> Drawing {
 #[test]
 fn hatching_in_a_frame_ends_on_the_frame() {
     let cases = pairs(&pairs(&[2.0, 3.0, 4.0], &[30.0, 45.0, 70.0]), &WIDTHS[..3]);
-    figures("hatching in a frame", 0.481, &cases, framed_hatching, |&(_, width), truth, traced| {
+    figures("hatching in a frame", 0.518, &cases, framed_hatching, |&(_, width), truth, traced| {
         same_strokes(truth, traced, 0.3 * width + 0.5)?;
         let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
         ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
@@ -191,7 +191,7 @@ fn a_frame_of_hatching_in_pencil_is_straight() {
     let cases = pairs(&pairs(&[2.5, 3.5], &[30.0, 45.0, 60.0]), &WIDTHS[..3]);
     figures_on(
         "frames of hatching in pencil",
-        0.11,
+        0.333,
         &cases,
         framed_hatching,
         |&((gap, angle), width), drawing| pencil(drawing, gap + angle + width),

@@ -32,10 +32,11 @@ const BLIND: f64 = 4.0;
 /// How many lines it meets at least, each for longer than so many pixels.
 const LEAST_MET: usize = 2;
 const MEETING: f64 = 2.5;
-/// The share of its length along which it is alone, at least; and at most, for the walk to be led away. Grain hides some.
+/// The share of its length along which it is alone: at least, and at most for the walk to be led away.
 const LEAST_ALONE: f64 = 0.2;
 const MOST_ALONE: f64 = 0.85;
-const MOST_ALONE_NOISY: f64 = 0.75;
+/// One seed of so many is looked at: a long line has enough.
+const SPARSE: i64 = 5;
 /// How much further out the quarters at its ends may lie than its middle, in line widths and pixels.
 const SAG: f64 = 0.02;
 const SAG_PIXELS: f64 = 0.08;
@@ -107,15 +108,15 @@ impl Straights {
 
     /// Lays the straight line through a seed over its ink, if there is one at which others end.
     pub fn lay(&mut self, image: &LineImage, coverage: &mut Coverage, rank: usize, seed: &Seed) {
-        if self.seen.contains(&pixel(seed.point)) {
+        let (x, y) = pixel(seed.point);
+        // Along a line of any slope, all remainders follow one another.
+        let mut around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+        if (x + 2 * y) % SPARSE != 0 || around.any(|near| self.seen.contains(&near)) {
             return;
         }
         let Some((straight, is_busy)) = straight(image, seed) else { return };
         if !is_busy {
-            let around = |p: Point| {
-                (-1..=1).flat_map(move |dy| (-1..=1).map(move |dx| p + Vec2::new(f64::from(dx), f64::from(dy))))
-            };
-            self.seen.extend(straight.points().into_iter().flat_map(around).map(pixel));
+            self.seen.extend(straight.points().into_iter().step_by(2).map(pixel));
             return;
         }
         let (points, heading) = (straight.points(), straight.heading());
@@ -199,8 +200,13 @@ fn straight(image: &LineImage, seed: &Seed) -> Option<(Straight, bool)> {
     let origin = seed.point + normal * profile.middle()?;
     let mut axis = Axis { image, origin, direction: seed.tangent, width };
     let mut reach = START * width;
-    let mut found = [-1.0, 1.0].map(|sign| axis.follow(sign, reach));
-    if found.iter().any(|(_, has_ended)| *has_ended) {
+    let is_inked = |along: f64| image.ink.sample(axis.at(along)) >= INKED;
+    // Most seeds are on curves, which these tell at once.
+    if ![-reach, reach].into_iter().all(is_inked) || ![-2.0 * reach, 2.0 * reach].into_iter().any(is_inked) {
+        return None;
+    }
+    let mut found = [(-reach, false), (reach, false)];
+    if [-1.0, 1.0].into_iter().any(|sign| axis.follow(sign, reach).1) {
         return None;
     }
     while !found.iter().all(|(_, has_ended)| *has_ended) {
@@ -212,11 +218,10 @@ fn straight(image: &LineImage, seed: &Seed) -> Option<(Straight, bool)> {
     axis.fit(&axis.samples(ends))?;
     let samples = axis.samples(ends);
     let length = ends[1] - ends[0];
-    let most_alone = if image.noise > 0.0 { MOST_ALONE_NOISY } else { MOST_ALONE };
     let is_long = length > (LONG * axis.width).max(LONG_PIXELS);
     let met = samples.windows(2).filter(|pair| pair[1].along - pair[0].along > MEETING).count();
     let is_busy = met >= LEAST_MET
-        && (LEAST_ALONE..most_alone).contains(&(samples.len() as f64 / length))
+        && (LEAST_ALONE..MOST_ALONE).contains(&(samples.len() as f64 / length))
         && sag(&samples, ends) < SAG * width + SAG_PIXELS;
     // An arc that goes on from it lies beside it for a while.
     let close = |s: &&Sample| s.beside.abs() <= CLOSE * axis.width + CLOSE_PIXELS;
