@@ -176,13 +176,18 @@ fn framed_hatching(&((gap, angle), width): &((f64, f64), f64)) -> Drawing {
     page(strokes)
 }
 
+/// The frame, drawn first, is one stroke of four straight lines.
+fn has_its_frame(width: f64, truth: &Drawing, traced: &Drawing) -> Result<(), String> {
+    let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
+    ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
+}
+
 #[test]
 fn hatching_in_a_frame_ends_on_the_frame() {
     let cases = pairs(&pairs(&[2.0, 3.0, 4.0], &[30.0, 45.0, 70.0]), &WIDTHS[..3]);
     figures("hatching in a frame", 0.518, &cases, framed_hatching, |&(_, width), truth, traced| {
         same_strokes(truth, traced, 0.3 * width + 0.5)?;
-        let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
-        ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
+        has_its_frame(width, truth, traced)
     });
 }
 
@@ -195,10 +200,7 @@ fn a_frame_of_hatching_in_pencil_is_straight() {
         &cases,
         framed_hatching,
         |&((gap, angle), width), drawing| pencil(drawing, gap + angle + width),
-        |&(_, width), truth, traced| {
-            let frame = like_stroke(&truth.strokes[0], traced, 0.3 * width + 0.5)?;
-            ensure(straight_pieces(&frame.centreline) == Some(4), || "the frame is not four straight lines".into())
-        },
+        |&(_, width), truth, traced| has_its_frame(width, truth, traced),
     );
 }
 

@@ -160,29 +160,30 @@ impl Tracing<'_> {
     /// Traces the line that a straight line is part of, unless that is traced already.
     fn extend(&mut self, id: usize) {
         let Some((rank, straight)) = self.straights.take(id) else { return };
+        let (streamline, _) = self.walked(id, |walker| walker.extend(&straight));
+        self.streamlines.push((rank, streamline));
+    }
+
+    /// A line as it was walked, settled on its ink, and how many pixels of that are new.
+    fn walked(&mut self, id: usize, walk: impl FnOnce(&mut Walker) -> Streamline) -> (Streamline, usize) {
         let mut walker = Walker::new(self.image, self.frames, &mut self.coverage, &mut self.straights, id as u32);
-        let mut streamline = walker.extend(&straight);
+        let mut streamline = walk(&mut walker);
         let width = walker.width();
         relax::relax(self.image, &mut streamline, width);
-        self.coverage.paint(&streamline.points, &streamline.widths);
-        self.streamlines.push((rank, streamline));
+        let fresh = self.coverage.paint(&streamline.points, &streamline.widths);
+        (streamline, fresh)
     }
 
     /// Traces the line through a seed, unless its ink is covered.
     fn sow(&mut self, rank: usize, seed: &Seed) {
-        let image = self.image;
         if self.coverage.is_painted(seed.point) {
             return;
         }
         let before = self.coverage.len();
         let id = self.straights.len() + self.streamlines.len();
-        let mut walker = Walker::new(image, self.frames, &mut self.coverage, &mut self.straights, id as u32);
-        let mut streamline = walker.trace(seed);
-        let width = walker.width();
-        relax::relax(image, &mut streamline, width);
-        let fresh = self.coverage.paint(&streamline.points, &streamline.widths);
+        let (streamline, fresh) = self.walked(id, |walker| walker.trace(seed));
         // Less ink of its own than half a dot: a bump on another line's edge.
-        if (fresh as f64) < 0.4 * image.line_width * image.line_width {
+        if (fresh as f64) < 0.4 * self.image.line_width * self.image.line_width {
             self.coverage.truncate(before);
         } else {
             self.streamlines.push((rank, streamline));

@@ -3,6 +3,7 @@
 use super::coverage::Coverage;
 use crate::clean::{LineImage, is_ridge};
 use crate::field::FrameField;
+use crate::profile::cross_profile;
 use crate::raster::runs;
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
@@ -12,6 +13,17 @@ use rayon::prelude::*;
 pub(super) struct Seed {
     pub point: Point,
     pub tangent: Vec2,
+}
+
+impl Seed {
+    /// The middle of the line's ink and its width, in pixels; `None` where the ink is not one line's.
+    pub fn line(&self, image: &LineImage) -> Option<(Point, f64)> {
+        let normal = self.tangent.turn_90();
+        let depth = f64::from(image.depth.at(self.point).unwrap_or(1.0));
+        let profile = cross_profile(&image.ink, self.point, normal, 1.5 * depth + 2.0)?;
+        let width = profile.width().filter(|width| *width < 2.5 * depth + 0.5)?;
+        Some((self.point + normal * profile.middle()?, width.max(1.0)))
+    }
 }
 
 /// How far the ink is followed along a direction to judge it, in line widths.

@@ -193,11 +193,7 @@ struct Sample {
 
 /// The long straight line through a seed, and whether many others end at it.
 fn straight(image: &LineImage, seed: &Seed) -> Option<(Straight, bool)> {
-    let depth = f64::from(image.depth.at(seed.point)?);
-    let normal = seed.tangent.turn_90();
-    let profile = cross_profile(&image.ink, seed.point, normal, 1.5 * depth + 2.0)?;
-    let width = profile.width().filter(|w| *w < (2.5 * depth + 0.5).min(WIDEST * image.line_width + 0.5))?.max(1.0);
-    let origin = seed.point + normal * profile.middle()?;
+    let (origin, width) = seed.line(image).filter(|(_, width)| *width < WIDEST * image.line_width + 0.5)?;
     let mut axis = Axis { image, origin, direction: seed.tangent, width };
     let mut reach = START * width;
     let is_inked = |along: f64| image.ink.sample(axis.at(along)) >= INKED;

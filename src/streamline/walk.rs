@@ -87,16 +87,8 @@ impl<'a, 'b> Walker<'a, 'b> {
 
     /// The streamline through a seed.
     pub fn trace(&mut self, seed: &Seed) -> Streamline {
-        let normal = seed.tangent.turn_90();
-        let mut start = seed.point;
-        let depth = f64::from(self.image.depth.at(seed.point).unwrap_or(1.0));
-        let profile = cross_profile(&self.image.ink, start, normal, 1.5 * depth + 2.0);
-        if let Some((width, middle)) = profile.and_then(|p| Some((p.width()?, p.middle()?)))
-            && width < 2.5 * depth + 0.5
-        {
-            self.width = width.max(1.0);
-            start += normal * middle;
-        }
+        let (start, width) = seed.line(self.image).unwrap_or((seed.point, self.width));
+        self.width = width;
         self.core = self.image.ink.sample(start).max(0.3);
         self.both_ways(vec![Step { point: start, heading: seed.tangent, width: self.width, drift: 0.0 }])
     }
@@ -104,10 +96,10 @@ impl<'a, 'b> Walker<'a, 'b> {
     /// A straight line, and where it goes on from its ends.
     pub fn extend(&mut self, straight: &Straight) -> Streamline {
         self.width = straight.width;
-        let points = straight.points();
-        let core = points.iter().map(|&p| self.image.ink.sample(p)).sum::<f32>() / points.len() as f32;
+        let steps: Vec<Step> = along(straight).collect();
+        let core = steps.iter().map(|s| self.image.ink.sample(s.point)).sum::<f32>() / steps.len() as f32;
         self.core = core.max(0.3);
-        self.both_ways(along(straight).collect())
+        self.both_ways(steps)
     }
 
     /// Walks on from the last of `start`, and back from its first.
@@ -152,7 +144,7 @@ impl<'a, 'b> Walker<'a, 'b> {
                 index,
             });
             let Some(mut next) = self.advance(&steps, covered.is_some()) else {
-                let Some(Covered { from, beside }) = covered else {
+                let Some(stretch) = covered else {
                     let stop = self.stop_at(here.point);
                     if stop == Stop::Solid {
                         let outside = steps.iter().rposition(|s| !self.is_solid(s.point));
@@ -160,8 +152,7 @@ impl<'a, 'b> Walker<'a, 'b> {
                     }
                     return (steps, stop, false);
                 };
-                steps.truncate(from.max(sure));
-                return (self.up_to(beside, steps, sure), Stop::Merged, false);
+                return (self.up_to(stretch, steps, sure), Stop::Merged, false);
             };
             let covering = self.covering(&next, index);
             if let Some(mark) = covering
@@ -207,11 +198,10 @@ impl<'a, 'b> Walker<'a, 'b> {
                 }
                 _ => {}
             }
-            if let Some(Covered { from, beside }) = covered {
+            if let Some(stretch) = covered {
                 next.width = f64::NAN;
-                if (steps.len() - from) as f64 * STEP > COAST_COVERED * self.width {
-                    steps.truncate(from.max(sure));
-                    return (self.up_to(beside, steps, sure), Stop::Merged, false);
+                if (steps.len() - stretch.from) as f64 * STEP > COAST_COVERED * self.width {
+                    return (self.up_to(stretch, steps, sure), Stop::Merged, false);
                 }
             }
             steps.push(next);
@@ -221,10 +211,11 @@ impl<'a, 'b> Walker<'a, 'b> {
         }
     }
 
-    /// A walk that ran along the streamline `beside` in the end. If that is a straight line, it has come to it at an angle,
-    /// and was led round on its ink: the line itself goes straight on, over all of it.
-    fn up_to(&self, beside: u32, mut steps: Vec<Step>, sure: usize) -> Vec<Step> {
-        let Some(straight) = self.straights.get(beside) else { return steps };
+    /// The steps of a walk that ended in a covered stretch, up to there. If it ran along a straight line that it had come to
+    /// at an angle, it was led round on its ink: the line itself goes straight on, over all of it.
+    fn up_to(&self, stretch: Covered, mut steps: Vec<Step>, sure: usize) -> Vec<Step> {
+        steps.truncate(stretch.from.max(sure));
+        let Some(straight) = self.straights.get(stretch.beside) else { return steps };
         let outside = |s: &Step| straight.distance(s.point) > 0.5 * (straight.width + self.width);
         let own = steps.iter().rposition(|s| outside(s) && !s.width.is_nan()).map_or(0, |last| last + 1);
         if own < sure || steps.len() - own > (LED * self.width / STEP) as usize {
