@@ -287,8 +287,9 @@ fn a_circle_that_a_line_touches_stays_a_circle_and_a_line() {
         0.755,
         &cases,
         |&(((radius, depth), width), turn)| {
-            let touch = polar(CENTER, turn - 90.0, radius + (1.0 - depth) * width);
-            page(vec![circle(CENTER, radius, width), bar(touch, turn, 52.0, width)])
+            let middle = polar(CENTER, turn + 90.0, 0.5 * radius);
+            let touch = polar(middle, turn - 90.0, radius + (1.0 - depth) * width);
+            page(vec![circle(middle, radius, width), bar(touch, turn, 46.0, width)])
         },
         |&((_, width), _), truth, traced| {
             same_strokes(truth, traced, slack(width))?;

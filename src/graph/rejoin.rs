@@ -10,7 +10,7 @@ use super::course::{course, run};
 use super::ends::End;
 use super::nodes::{Node, continuation, two_corners};
 use crate::clean::LineImage;
-use crate::streamline::{Stop, Streamline};
+use crate::streamline::{STEP, Stop, Streamline};
 
 /// What the stem must gain over the body's own continuation, radians.
 const MARGIN: f64 = 0.1;
@@ -19,6 +19,8 @@ const LARGEST_TURN: f64 = 0.61;
 /// Course of a body beside a node: from this many line widths away, over that many.
 const AWAY: f64 = 2.0;
 const OVER: f64 = 5.0;
+/// Neither is more than this share of a closed line.
+const ROUND: f64 = 0.125;
 
 /// The places at which bodies should be cut.
 pub(super) fn cuts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], nodes: &[Node]) -> Vec<Place> {
@@ -28,7 +30,8 @@ pub(super) fn cuts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]
 fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Node) -> Option<Place> {
     let [body] = node.bodies[..] else { return None };
     let (line, at) = (&lines[body.line], body.at.round() as i64);
-    let [away, over] = [AWAY, OVER].map(|widths| widths * image.line_width);
+    let round = if line.closed { ROUND * line.points.len() as f64 * STEP } else { f64::INFINITY };
+    let [away, over] = [AWAY, OVER].map(|widths| (widths * image.line_width).min(round));
     let sides = [-1, 1].map(|step| course(line, &run(line, at, step, away, over)));
     let [Some(back), Some(ahead)] = sides else { return None };
     let stems: Vec<&End> = node.ends.iter().filter_map(|&e| ends[e].as_ref()).collect();

@@ -11,6 +11,7 @@ mod coverage;
 pub(crate) mod heading;
 mod islands;
 mod relax;
+mod ring;
 mod seeds;
 mod straight;
 mod walk;
@@ -21,10 +22,11 @@ use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::{Error, Result};
 use crate::field::FrameField;
-use coverage::Coverage;
+use coverage::{Coverage, Mark};
 use islands::Island;
 use kurbo::Point;
 use rayon::prelude::*;
+use ring::Rings;
 use seeds::Seed;
 use straight::Straights;
 use walk::Walker;
@@ -119,6 +121,7 @@ fn trace_island(
     let coverage = Coverage::new(image, island.bounds, ink_pixels);
     let mut tracing = Tracing { image, frames, coverage, straights: Straights::default(), streamlines: Vec::new() };
     tracing.lay_straights(&island.seeds, cancel)?;
+    tracing.lay_rings(&island.seeds, cancel)?;
     for id in 0..tracing.straights.len() {
         cancel.check()?;
         tracing.extend(id);
@@ -153,6 +156,27 @@ impl Tracing<'_> {
             if !self.coverage.is_painted(seed.point) {
                 self.straights.lay(self.image, &mut self.coverage, *rank, seed);
             }
+        }
+        Ok(())
+    }
+
+    /// Traces the circles through seeds that other lines touch.
+    fn lay_rings(&mut self, seeds: &[(usize, Seed)], cancel: &Cancel) -> Result<()> {
+        let mut rings = Rings::default();
+        for (rank, seed) in seeds {
+            cancel.check()?;
+            if self.coverage.is_painted(seed.point) {
+                continue;
+            }
+            let Some(ring) = rings.find(self.image, self.frames, seed) else { continue };
+            let line = ring.streamline(self.image);
+            let streamline = (self.straights.len() + self.streamlines.len()) as u32;
+            for (index, &point) in (0..).zip(&line.points) {
+                let heading = (point - ring.centre).normalize().turn_90();
+                self.coverage.add(Mark { point, heading, streamline, index });
+            }
+            self.coverage.paint(&line.points, &line.widths);
+            self.streamlines.push((*rank, line));
         }
         Ok(())
     }

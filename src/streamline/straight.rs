@@ -55,7 +55,7 @@ const ENTRY_COS: f64 = 0.985;
 const SHARED: f64 = 1.15;
 const SHARED_PIXELS: f64 = 0.25;
 /// Share of a line's ink that its middle must hold.
-const INKED: f32 = 0.5;
+pub(super) const INKED: f32 = 0.5;
 
 /// A piece of a straight line, which ends short of where the line does.
 #[derive(Clone, Copy, Debug)]
@@ -108,10 +108,7 @@ impl Straights {
 
     /// Lays the straight line through a seed over its ink, if there is one at which others end.
     pub fn lay(&mut self, image: &LineImage, coverage: &mut Coverage, rank: usize, seed: &Seed) {
-        let (x, y) = pixel(seed.point);
-        // Along a line of any slope, all remainders follow one another.
-        let mut around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
-        if (x + 2 * y) % SPARSE != 0 || around.any(|near| self.seen.contains(&near)) {
+        if !is_looked_at(seed.point, &self.seen) {
             return;
         }
         let Some((straight, is_busy)) = straight(image, seed) else { return };
@@ -175,26 +172,26 @@ pub(super) struct Comer {
 }
 
 /// A straight line while it is sought.
-struct Axis<'a> {
-    image: &'a LineImage,
-    origin: Point,
-    direction: Vec2,
-    width: f64,
+pub(super) struct Axis<'a> {
+    pub image: &'a LineImage,
+    pub origin: Point,
+    pub direction: Vec2,
+    pub width: f64,
 }
 
 /// The ink across a place on an axis.
-struct Sample {
+pub(super) struct Sample {
     /// Distance from the origin.
-    along: f64,
+    pub along: f64,
     /// Of the ink's middle from the axis.
-    beside: f64,
-    width: f64,
+    pub beside: f64,
+    pub width: f64,
 }
 
 /// The long straight line through a seed, and whether many others end at it.
 fn straight(image: &LineImage, seed: &Seed) -> Option<(Straight, bool)> {
-    let (origin, width) = seed.line(image).filter(|(_, width)| *width < WIDEST * image.line_width + 0.5)?;
-    let mut axis = Axis { image, origin, direction: seed.tangent, width };
+    let mut axis = Axis::new(image, seed)?;
+    let width = axis.width;
     let mut reach = START * width;
     let is_inked = |along: f64| image.ink.sample(axis.at(along)) >= INKED;
     // Most seeds are on curves, which these tell at once.
@@ -226,13 +223,19 @@ fn straight(image: &LineImage, seed: &Seed) -> Option<(Straight, bool)> {
     (is_long && last - first > 0.5 * length).then_some((Straight { from, to, width: axis.width }, is_busy))
 }
 
-impl Axis<'_> {
-    fn at(&self, along: f64) -> Point {
+impl<'a> Axis<'a> {
+    /// The axis of the line at a seed, unless its ink may be two lines'.
+    pub fn new(image: &'a LineImage, seed: &Seed) -> Option<Self> {
+        let (origin, width) = seed.line(image).filter(|(_, width)| *width < WIDEST * image.line_width + 0.5)?;
+        Some(Self { image, origin, direction: seed.tangent, width })
+    }
+
+    pub fn at(&self, along: f64) -> Point {
         self.origin + self.direction * along
     }
 
     /// The ink of the line alone at a distance from the origin.
-    fn sample(&self, along: f64) -> Option<Sample> {
+    pub fn sample(&self, along: f64) -> Option<Sample> {
         let reach = 0.85 * self.width + 1.0;
         let profile = cross_profile(&self.image.ink, self.at(along), self.direction.turn_90(), reach)?;
         let width = profile.width().filter(|w| *w < SHARED * self.width + SHARED_PIXELS && *w > 0.5 * self.width)?;
@@ -259,7 +262,7 @@ impl Axis<'_> {
         (sign * last, false)
     }
 
-    fn samples(&self, [from, to]: [f64; 2]) -> Vec<Sample> {
+    pub fn samples(&self, [from, to]: [f64; 2]) -> Vec<Sample> {
         (from.round() as i64..=to.round() as i64).filter_map(|s| self.sample(s as f64)).collect()
     }
 
@@ -290,7 +293,15 @@ fn sag(samples: &[Sample], ends: [f64; 2]) -> f64 {
     if inner.is_empty() || outer.is_empty() { 0.0 } else { (mean(&outer) - mean(&inner)).abs() }
 }
 
-fn pixel(p: Point) -> (i64, i64) {
+/// Whether a seed is one of those that are looked at: one of [`SPARSE`], and not beside pixels that were seen.
+pub(super) fn is_looked_at(seed: Point, seen: &HashSet<(i64, i64)>) -> bool {
+    let (x, y) = pixel(seed);
+    // Along a line of any slope, all remainders follow one another.
+    let mut around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+    (x + 2 * y) % SPARSE == 0 && !around.any(|near| seen.contains(&near))
+}
+
+pub(super) fn pixel(p: Point) -> (i64, i64) {
     (floor(p.x), floor(p.y))
 }
 
