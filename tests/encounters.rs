@@ -183,8 +183,8 @@ fn a_corner_that_stands_on_a_line_is_one_stroke() {
 
 #[test]
 fn a_loop_that_crosses_itself_is_one_stroke() {
-    // The flatter the loop, the shallower its crossing.
-    let cases = pairs(&pairs(&[20.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);
+    // The flatter the loop, the shallower its crossing; below a spread of 20 there is none.
+    let cases = pairs(&pairs(&[32.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);
     figures(
         "ribbon loops",
         0.616,
@@ -215,7 +215,7 @@ fn a_stroke_that_ends_on_its_own_body_is_one_stroke_or_a_stem_on_a_ring() {
     let middle = |turn: f64| polar(CENTER, turn, 20.0);
     figures(
         "sixes",
-        0.916,
+        0.983,
         &cases,
         |&((radius, width), turn)| {
             let ring = arc(middle(turn), radius, (turn + 90.0).to_radians(), std::f64::consts::TAU, width);
@@ -284,7 +284,7 @@ fn a_circle_that_a_line_touches_stays_a_circle_and_a_line() {
     let cases = pairs(&pairs(&pairs(&[14.0, 22.0, 32.0], &[1.0, 0.5, 0.0]), &WIDTHS), &TURNS);
     figures(
         "tangents of circles",
-        0.755,
+        0.992,
         &cases,
         |&(((radius, depth), width), turn)| {
             let middle = polar(CENTER, turn + 90.0, 0.5 * radius);
@@ -307,7 +307,7 @@ fn circles_that_touch_stay_circles() {
     let cases = pairs(&cases, &[false, true]);
     figures(
         "circles that touch",
-        0.552,
+        0.989,
         &cases,
         |&((((large, small), width), turn), inside)| {
             let (large, small) = if inside { (large + 24.0, small) } else { (large, small) };

@@ -5,7 +5,7 @@
 
 use super::heading::{Tail, angle_between};
 use super::seeds::Seed;
-use super::straight::{Axis, INKED, Sample, is_looked_at, pixel};
+use super::straight::{Axis, INKED, Sample, pixel};
 use super::{STEP, Stop, Streamline};
 use crate::clean::LineImage;
 use crate::field::FrameField;
@@ -23,12 +23,14 @@ const LARGEST: f64 = 64.0;
 /// line widths.
 const BESIDE: f64 = 0.1;
 const BESIDE_PIXELS: f64 = 0.3;
-const LEFT: f64 = 1.0;
+const LEFT: f64 = 1.5;
 /// How much further off it may lie per pixel where the circle is not known yet.
-const GUESS: f64 = 0.03;
+const GUESS: f64 = 0.05;
 /// Its root mean square around the whole circle.
 const ROUND: f64 = 0.04;
 const ROUND_PIXELS: f64 = 0.12;
+/// How much the field may turn more on one side of a seed than on the other, as a share of both.
+const UNEVEN: f64 = 0.5;
 /// The most places on each side that are looked at.
 const MOST_SAMPLES: f64 = 48.0;
 /// The longest arc of which nothing may be known, in radians.
@@ -47,7 +49,7 @@ pub(super) struct Rings {
 impl Rings {
     /// The circle through a seed that is whole, but shares its ink with other lines in places.
     pub fn find(&mut self, image: &LineImage, frames: &FrameField, seed: &Seed) -> Option<Ring> {
-        if !is_looked_at(seed.point, &self.seen) || !bends(image, frames, seed) {
+        if self.seen.contains(&pixel(seed.point)) || !bends(image, frames, seed) {
             return None;
         }
         let mut ring = Ring::around(image, seed)?;
@@ -194,12 +196,88 @@ fn pixels(to: f64, step: f64) -> impl Iterator<Item = f64> {
     (1..=(to / step) as usize).map(move |k| k as f64 * step)
 }
 
-/// Whether the field around a seed turns as it would on a circle that is not too large.
+/// Whether the field turns before and after a seed as it would on a circle that is not too large.
 fn bends(image: &LineImage, frames: &FrameField, seed: &Seed) -> bool {
     let reach = 0.5 * START * image.line_width;
-    let ahead = |sign: f64| frames.along(seed.point + seed.tangent * (sign * reach), seed.tangent);
-    match (ahead(-1.0), ahead(1.0)) {
-        (Some(before), Some(after)) => angle_between(before, after).abs() > 2.0 * reach / (LARGEST * image.line_width),
-        _ => true,
+    let turn = |sign: f64| {
+        let ahead = frames.along(seed.point + seed.tangent * (sign * reach), seed.tangent)?;
+        Some(sign * angle_between(seed.tangent, ahead))
+    };
+    let is_bend = |[a, b]: [f64; 2]| {
+        (a + b).abs() > 2.0 * reach / (LARGEST * image.line_width) && (a - b).abs() < UNEVEN * (a + b).abs()
+    };
+    turn(-1.0).zip(turn(1.0)).is_none_or(|(a, b)| is_bend([a, b]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::straight::tests::image;
+    use super::*;
+    use crate::field::PolyVectorField;
+
+    const MIDDLE: Point = Point::new(80.0, 80.0);
+
+    /// The ring that the first of the seeds around a circle finds, where its field is that of the circle.
+    fn ring_of(radius: f64, is_inked: impl Fn(Point) -> bool + Sync) -> Option<Ring> {
+        let image = image(is_inked);
+        let tangent = |p: Point| (p - MIDDLE).normalize().turn_90();
+        let field = PolyVectorField::from_directions(160, 160, |x, y| {
+            let t = tangent(Point::new(x as f64 + 0.5, y as f64 + 0.5));
+            t.is_finite().then(|| (t, t.turn_90()))
+        });
+        let (frames, mut rings) = (FrameField::new(field), Rings::default());
+        (0..180).find_map(|k| {
+            let point = MIDDLE + Vec2::from_angle(f64::from(2 * k).to_radians()) * radius;
+            rings.find(&image, &frames, &Seed { point, tangent: tangent(point) })
+        })
+    }
+
+    fn is_on_circle(p: Point, radius: f64, width: f64) -> bool {
+        (p.distance(MIDDLE) - radius).abs() < 0.5 * width
+    }
+
+    #[test]
+    fn a_circle_that_lines_touch_is_found_where_it_is() {
+        let mut found = 0;
+        for radius in [10.0, 24.0, 50.0] {
+            for width in [3.0, 4.0, 5.0] {
+                for sides in [1u32, 4, 6] {
+                    let touched = |p: Point| {
+                        let side = |k: u32| {
+                            let out = Vec2::from_angle(f64::from(k) / f64::from(sides) * TAU + 0.2);
+                            ((p - MIDDLE).dot(out) - radius).abs() < 0.5 * width
+                        };
+                        (0..sides).any(side)
+                    };
+                    // Between two lines that touch it, the circle must be alone for a while.
+                    let alone = TAU * radius / f64::from(sides) - 2.0 * (2.4 * radius * width).sqrt();
+                    if alone < 6.0 * width {
+                        continue;
+                    }
+                    found += 1;
+                    let ring = ring_of(radius, |p| is_on_circle(p, radius, width) || touched(p));
+                    let ring = ring.unwrap_or_else(|| panic!("{radius} {width} {sides}: none"));
+                    let off = (ring.radius - radius).abs().max(ring.centre.distance(MIDDLE));
+                    assert!(off < 0.3, "{radius} {width} {sides}: {ring:?}");
+                }
+            }
+        }
+        assert_eq!(found, 11);
+    }
+
+    #[test]
+    fn circles_that_are_alone_or_open_and_ellipses_are_left_to_the_walk() {
+        for radius in [10.0, 24.0, 50.0] {
+            let crossed = |p: Point| (p.x - 80.0).abs() < 1.5 || (p.y - 80.0).abs() < 1.5;
+            let open = |p: Point| (p - MIDDLE).atan2().abs() > 0.3;
+            let ellipse = |p: Point| MIDDLE + Vec2::new(p.x - 80.0, 1.06 * (p.y - 80.0));
+            assert!(ring_of(radius, |p| is_on_circle(p, radius, 3.0) || crossed(p)).is_some(), "crossed {radius}");
+            assert!(ring_of(radius, |p| is_on_circle(p, radius, 3.0)).is_none(), "alone");
+            assert!(ring_of(radius, |p| (is_on_circle(p, radius, 3.0) && open(p)) || crossed(p)).is_none(), "open");
+            if radius > 20.0 {
+                let ring = ring_of(radius, |p| is_on_circle(ellipse(p), radius, 3.0) || crossed(p));
+                assert!(ring.is_none(), "ellipse {radius}");
+            }
+        }
     }
 }

@@ -108,7 +108,10 @@ impl Straights {
 
     /// Lays the straight line through a seed over its ink, if there is one at which others end.
     pub fn lay(&mut self, image: &LineImage, coverage: &mut Coverage, rank: usize, seed: &Seed) {
-        if !is_looked_at(seed.point, &self.seen) {
+        let (x, y) = pixel(seed.point);
+        // Along a line of any slope, all remainders follow one another.
+        let mut around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+        if (x + 2 * y) % SPARSE != 0 || around.any(|near| self.seen.contains(&near)) {
             return;
         }
         let Some((straight, is_busy)) = straight(image, seed) else { return };
@@ -293,28 +296,20 @@ fn sag(samples: &[Sample], ends: [f64; 2]) -> f64 {
     if inner.is_empty() || outer.is_empty() { 0.0 } else { (mean(&outer) - mean(&inner)).abs() }
 }
 
-/// Whether a seed is one of those that are looked at: one of [`SPARSE`], and not beside pixels that were seen.
-pub(super) fn is_looked_at(seed: Point, seen: &HashSet<(i64, i64)>) -> bool {
-    let (x, y) = pixel(seed);
-    // Along a line of any slope, all remainders follow one another.
-    let mut around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
-    (x + 2 * y) % SPARSE == 0 && !around.any(|near| seen.contains(&near))
-}
-
 pub(super) fn pixel(p: Point) -> (i64, i64) {
     (floor(p.x), floor(p.y))
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::clean::clean;
     use crate::load::Scan;
     use crate::options::Options;
     use crate::raster::Raster;
 
-    /// The line image of points that lie near one of some lines or of a circle.
-    fn image(is_inked: impl Fn(Point) -> bool + Sync) -> LineImage {
+    /// The line image of 160 x 160 pixels of ink.
+    pub fn image(is_inked: impl Fn(Point) -> bool + Sync) -> LineImage {
         let covered = |x: usize, y: usize| {
             let at = |k: u32| {
                 Point::new(x as f64 + f64::from(2 * (k % 4) + 1) / 8.0, y as f64 + f64::from(2 * (k / 4) + 1) / 8.0)
