@@ -244,6 +244,25 @@ fn a_stroke_that_ends_on_its_own_body_is_one_stroke_or_a_stem_on_a_ring() {
 }
 
 #[test]
+fn humps_of_a_coil_meet_at_the_tip_between_them() {
+    let cases = pairs(&pairs(&[12.0, 18.0, 26.0], &WIDTHS), &TURNS);
+    figures(
+        "humps of a coil",
+        0.7,
+        &cases,
+        |&((radius, width), turn)| {
+            let tip = polar(CENTER, turn, -0.5 * radius);
+            let hump = |side: f64, from: f64| {
+                let middle = polar(tip, turn + side * 90.0, radius);
+                arc(middle, radius, (turn + from).to_radians(), f64::to_radians(150.0), width)
+            };
+            page(vec![joined(hump(-1.0, -60.0), hump(1.0, -90.0))])
+        },
+        |&((_, width), _), truth, traced| same_strokes(truth, traced, slack(width)),
+    );
+}
+
+#[test]
 fn two_arcs_that_leave_a_line_at_one_point_leave_it_whole() {
     let cases = pairs(&pairs(&[30.0, 45.0, 70.0], &WIDTHS[..4]), &TURNS);
     figures(

@@ -1,6 +1,6 @@
 //! The course of a line towards a place, and how well one line goes on in another.
 
-use crate::streamline::{STEP, Streamline, Tail, angle_between};
+use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{CubicBez, ParamCurve, Point};
 
 /// Of thinner pens than this, in pixels, courses are as long as of this one.
@@ -44,6 +44,27 @@ pub(super) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
     let curve = CubicBez::new(a.point, a.point + a.heading * third, b.point + b.heading * third, b.point);
     let count = (chord / STEP).ceil().max(2.0) as usize;
     (1..count).map(|k| curve.eval(k as f64 / count as f64)).collect()
+}
+
+/// The last points of a line, from where it meets another on, and how many points of its own they replace.
+pub(super) struct Ending {
+    pub points: Vec<Point>,
+    pub replaced: usize,
+}
+
+impl Ending {
+    pub fn apply(self, line: &mut Streamline, side: usize) {
+        if side == 1 {
+            line.reverse();
+        }
+        let count = self.points.len();
+        line.points.splice(..self.replaced, self.points);
+        line.widths.splice(..self.replaced, vec![f64::NAN; count]);
+        if side == 1 {
+            line.reverse();
+        }
+        line.stops[side] = Stop::Joined;
+    }
 }
 
 #[cfg(test)]

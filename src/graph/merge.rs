@@ -7,6 +7,7 @@
 //! is the node; up to where the line is alone again, its middle is what was solved.
 
 use super::contacts::{LineIndex, Place, direction, direction_at, point_at, width_at};
+use super::course::Ending;
 use super::ends::{End, ends};
 use super::nodes::arm_line;
 use crate::clean::LineImage;
@@ -48,33 +49,12 @@ const FEWEST: usize = 6;
 pub(super) fn merge(image: &LineImage, lines: &mut [Streamline]) {
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
-    let is_open = |end: &&End| !end.stop.is_cut_off() && end.stop != Stop::Settled;
+    let is_open = |end: &&End| !end.stop.is_cut_off() && !matches!(end.stop, Stop::Settled | Stop::Joined);
     let solved = |end: &End| Some((end.line, end.side, solve(image, lines, &index, end)?));
-    let solved: Vec<(usize, usize, Course)> =
+    let solved: Vec<(usize, usize, Ending)> =
         ends.par_iter().filter_map(|end| solved(end.as_ref().filter(is_open)?)).collect();
-    for (line, side, course) in solved {
-        course.apply(&mut lines[line], side);
-    }
-}
-
-/// The last points of a line, from the body on, and how many points of its own they replace.
-struct Course {
-    points: Vec<Point>,
-    replaced: usize,
-}
-
-impl Course {
-    fn apply(self, line: &mut Streamline, side: usize) {
-        if side == 1 {
-            line.reverse();
-        }
-        let count = self.points.len();
-        line.points.splice(..self.replaced, self.points);
-        line.widths.splice(..self.replaced, vec![f64::NAN; count]);
-        if side == 1 {
-            line.reverse();
-        }
-        line.stops[side] = Stop::Joined;
+    for (line, side, ending) in solved {
+        ending.apply(&mut lines[line], side);
     }
 }
 
@@ -128,7 +108,7 @@ impl Leave {
     }
 }
 
-fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Course> {
+fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Ending> {
     let lw = image.line_width;
     let body = *bodies(lines, index, end, NEAR * lw).first()?;
     let arriving = arm_line(&end.tail, point_at(&lines[body.line], body.at), lw).1;
@@ -165,7 +145,7 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
     }
     let at = |k: i64| leave.s0 + STEP * k as f64;
     let points: Vec<Point> = (0..count).map(|k| frame.point(at(k), leave.at(at(k)))).collect::<Option<_>>()?;
-    Some(Course { points, replaced: alone })
+    Some(Ending { points, replaced: alone })
 }
 
 /// The lines that an end runs along, the nearest first, each where it is nearest.

@@ -10,6 +10,7 @@ mod assemble;
 mod confidence;
 mod contacts;
 mod course;
+mod cusps;
 mod ends;
 mod forks;
 mod gaps;
@@ -243,6 +244,7 @@ pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, c
         settle::settle(image, &mut lines);
     }
     touches::part(image, &mut lines);
+    cusps::sharpen(image, &mut lines);
     forks::straighten(image, &mut lines);
     let pens = pens::Pens::of(image, &lines, &dots);
     if let Some(pens) = &pens {

@@ -139,7 +139,7 @@ impl Solver<'_> {
         let contacts: Vec<&Contact> = ends.iter().flat_map(|&e| &self.of_end[e]).collect();
         let bodies = self.bodies(&ends, &contacts);
         let position = if contacts.is_empty() && ends.len() == 1 {
-            self.free_end(self.end(ends[0]))
+            free_end(self.image, self.lines, self.end(ends[0]))
         } else {
             self.meeting_point(&ends, &bodies, &contacts)
         };
@@ -185,7 +185,7 @@ impl Solver<'_> {
             return self.merge_point(self.end(*end), *body);
         }
         let observed: Vec<Point> = if contacts.is_empty() {
-            ends.iter().map(|&e| self.free_end(self.end(e))).collect()
+            ends.iter().map(|&e| free_end(self.image, self.lines, self.end(e))).collect()
         } else {
             contacts.iter().map(|c| c.point).collect()
         };
@@ -220,24 +220,6 @@ impl Solver<'_> {
         let s = if s.is_finite() { s.clamp(0.0, reach) } else { 0.0 };
         let p = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
         nearest_on(&self.lines[body.line], body, p, reach)
-    }
-
-    /// The end of the pen's path: half a line width short of the end of the ink.
-    fn free_end(&self, end: &End) -> Point {
-        let n = self.lines[end.line].points.len();
-        let at = |k: usize| self.lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
-        let d = at(0) - at((n - 1).min(3));
-        let heading = if d.hypot() > 1e-9 { d.normalize() } else { end.tail.heading };
-        if end.stop.is_cut_off() {
-            return end.point;
-        }
-        let ink = |s: f64| self.image.ink.sample(end.point + heading * s);
-        let (edge, pixel) = edge_ahead(ink, end.width);
-        let width = unblurred_width(end.width, self.image.blur);
-        let drawn_in = blurred_cap(self.image.blur.max(pixel * self.image.scale), width);
-        // Never past the middle of a short line.
-        let half_length = 0.5 * (n as f64 - 1.0) * STEP;
-        end.point + heading * (edge + drawn_in - 0.5 * width).max(-half_length + 0.25)
     }
 
     /// Two groups are one unless that would fold a short line onto itself.
@@ -326,6 +308,24 @@ impl Solver<'_> {
     fn turn(&self, a: usize, b: usize, at: Point) -> f64 {
         continuation(&self.end(a).tail, &self.end(b).tail, at, self.image.line_width)
     }
+}
+
+/// The end of the pen's path: half a line width short of the end of the ink.
+pub(super) fn free_end(image: &LineImage, lines: &[Streamline], end: &End) -> Point {
+    let n = lines[end.line].points.len();
+    let at = |k: usize| lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
+    let d = at(0) - at((n - 1).min(3));
+    let heading = if d.hypot() > 1e-9 { d.normalize() } else { end.tail.heading };
+    if end.stop.is_cut_off() {
+        return end.point;
+    }
+    let ink = |s: f64| image.ink.sample(end.point + heading * s);
+    let (edge, pixel) = edge_ahead(ink, end.width);
+    let width = unblurred_width(end.width, image.blur);
+    let drawn_in = blurred_cap(image.blur.max(pixel * image.scale), width);
+    // Never past the middle of a short line.
+    let half_length = 0.5 * (n as f64 - 1.0) * STEP;
+    end.point + heading * (edge + drawn_in - 0.5 * width).max(-half_length + 0.25)
 }
 
 /// How far inside the edge of a round cap half of the ink is left under a blur of variance `v`: `v / w` to second order
