@@ -187,7 +187,7 @@ fn a_loop_that_crosses_itself_is_one_stroke() {
     let cases = pairs(&pairs(&[32.0, 40.0, 60.0], &WIDTHS), &[0.0, 30.0, 90.0, 200.0]);
     figures(
         "ribbon loops",
-        0.616,
+        0.783,
         &cases,
         |&((spread, width), turn)| {
             let at = |x: f64, y: f64| {
@@ -248,7 +248,7 @@ fn humps_of_a_coil_meet_at_the_tip_between_them() {
     let cases = pairs(&pairs(&[12.0, 18.0, 26.0], &WIDTHS), &TURNS);
     figures(
         "humps of a coil",
-        0.7,
+        0.688,
         &cases,
         |&((radius, width), turn)| {
             let tip = polar(CENTER, turn, -0.5 * radius);

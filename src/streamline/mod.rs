@@ -4,8 +4,8 @@
 //! pulled back to the middle of the ink at each step, except inside junctions, where the cross profile says
 //! nothing about the line that is being followed. A streamline covers ink for its own direction only, so others
 //! may cross it but not run along it (Bessmeltsev & Solomon 2019, section 5, with a seed order of our own). Long straight
-//! lines that others end at cover their ink before any walk begins. Ink that no streamline covers in the end gets seeds of
-//! its own, so that nothing is lost.
+//! lines that others end at, and circles that others touch, cover their ink before any walk begins. Ink that no streamline
+//! covers in the end gets seeds of its own, so that nothing is lost.
 
 mod coverage;
 pub(crate) mod heading;
