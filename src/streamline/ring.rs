@@ -26,7 +26,7 @@ const BESIDE_PIXELS: f64 = 0.3;
 const LEFT: f64 = 1.5;
 /// How much further off it may lie per pixel where the circle is not known yet.
 const GUESS: f64 = 0.05;
-/// Its root mean square around the whole circle.
+/// The root mean square of that around the whole circle, in line widths and pixels.
 const ROUND: f64 = 0.04;
 const ROUND_PIXELS: f64 = 0.12;
 /// How much the field may turn more on one side of a seed than on the other, as a share of both.
