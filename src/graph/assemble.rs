@@ -3,6 +3,7 @@
 use super::contacts::{LineIndex, Place, around, direction, piece_count};
 use super::ends::{End, end_id};
 use super::nodes::Node;
+use super::point_index::PointIndex;
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::drawing::Color;
@@ -11,8 +12,6 @@ use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use rayon::prelude::*;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 use std::collections::BTreeMap;
 
 /// Points nearer to a node than this, in line widths, are inside the junction and do not speak for the line.
@@ -100,10 +99,7 @@ impl<'a> Assembly<'a> {
     fn add_crossings(&mut self) {
         let mut lines = std::mem::take(&mut self.lines);
         let index = LineIndex::new(&lines);
-        let places = self.nodes.iter().enumerate();
-        let nodes = RTree::bulk_load(
-            places.map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i)).collect::<Vec<_>>(),
-        );
+        let nodes = PointIndex::new(self.nodes.iter().map(|n| n.position).enumerate());
         let mut found: BTreeMap<(usize, usize), Vec<Meeting>> = BTreeMap::new();
         let crossed = |i: usize| self.crossed(&lines, i, &index);
         let crossed: Vec<Meeting> = (0..lines.len()).into_par_iter().flat_map_iter(crossed).collect();
@@ -160,10 +156,9 @@ impl<'a> Assembly<'a> {
     }
 
     /// Whether both lines share a node here.
-    fn is_at_node(&self, nodes: &RTree<GeomWithData<[f64; 2], usize>>, a: Place, b: Place, point: Point) -> bool {
-        let reach = 1.2 * self.image.line_width;
-        nodes.locate_within_distance([point.x, point.y], reach * reach).any(|near| {
-            let n = &self.nodes[near.data];
+    fn is_at_node(&self, nodes: &PointIndex, a: Place, b: Place, point: Point) -> bool {
+        nodes.near(point, 1.2 * self.image.line_width).any(|near| {
+            let n = &self.nodes[near];
             let has = |line: usize| n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line);
             has(a.line) && has(b.line)
         })

@@ -1,6 +1,7 @@
 //! Where the ends of lines meet other lines.
 
 use super::ends::{End, end_id};
+use super::point_index::PointIndex;
 use crate::clean::LineImage;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point, Vec2};
@@ -343,12 +344,11 @@ impl Finder<'_> {
         contacts.iter().for_each(|c| met[c.end] = true);
         let free = self.ends.iter().flatten().filter(|e| e.stop == Stop::InkEnd && !met[end_id(e.line, e.side)]);
         let free: Vec<&End> = free.collect();
-        let places = free.iter().enumerate().map(|(i, e)| GeomWithData::new([e.point.x, e.point.y], i));
-        let tree = RTree::bulk_load(places.collect());
+        let index = PointIndex::new(free.iter().map(|e| e.point).enumerate());
         let widths = if self.image.noise > 0.0 { BLUNT } else { BLUNT_ON_CLEAN };
         let reach = widths * self.image.line_width.max(1.5);
         let nearest = |end: &End| {
-            let others = tree.nearest_neighbor_iter(&[end.point.x, end.point.y]).map(|near| free[near.data]);
+            let others = index.by_distance(end.point).map(|near| free[near]);
             let mut others = others.take_while(|o| (o.point - end.point).hypot() <= reach);
             // A short line's own ends are not one another's.
             let long = self.lines[end.line].points.len() as f64 * STEP > 3.0 * reach;

@@ -6,12 +6,11 @@
 use super::course::{Ending, bridge, course, run};
 use super::ends::{End, ends};
 use super::nodes::{arm_line, free_end};
+use super::point_index::PointIndex;
 use crate::clean::LineImage;
 use crate::profile::cross_profile;
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 use std::iter;
 
 /// The tip is no further than this from where the lines are alone, in line widths.
@@ -36,13 +35,15 @@ const INKED: f32 = 0.4;
 /// Leads both lines of every cusp to its tip.
 pub(super) fn sharpen(image: &LineImage, lines: &mut [Streamline]) {
     let ends: Vec<End> = ends(image, lines).into_iter().flatten().collect();
-    let places = ends.iter().enumerate().map(|(i, end)| GeomWithData::new([end.point.x, end.point.y], i));
-    let tree = RTree::bulk_load(places.collect());
+    let index = PointIndex::new(ends.iter().map(|end| end.point).enumerate());
     let mut taken = vec![false; ends.len()];
     for (i, end) in ends.iter().enumerate().filter(|(_, end)| end.stop == Stop::InkEnd) {
-        let near = tree.locate_within_distance([end.point.x, end.point.y], (LONGEST * image.line_width).powi(2));
-        let others: Vec<usize> = near.map(|near| near.data).filter(|&j| j != i && !taken[i] && !taken[j]).collect();
-        let cusps = others.into_iter().filter_map(|j| Some((j, cusp(image, lines, end, &ends[j])?)));
+        if taken[i] {
+            continue;
+        }
+        let tip = free_end(image, lines, end);
+        let others = index.near(end.point, LONGEST * image.line_width).filter(|&j| j != i && !taken[j]);
+        let cusps = others.filter_map(|j| Some((j, cusp(image, lines, [end, &ends[j]], tip)?)));
         let Some((j, endings)) = cusps.min_by_key(|(j, _)| *j) else { continue };
         (taken[i], taken[j]) = (true, true);
         for (end, ending) in [end, &ends[j]].into_iter().zip(endings) {
@@ -51,12 +52,12 @@ pub(super) fn sharpen(image: &LineImage, lines: &mut [Streamline]) {
     }
 }
 
-/// How two lines end at a cusp, of which the first reaches the end of the ink.
-fn cusp(image: &LineImage, lines: &[Streamline], a: &End, b: &End) -> Option<[Ending; 2]> {
+/// How two lines end at a cusp, of which the first reaches the end of the ink, at `tip`.
+fn cusp(image: &LineImage, lines: &[Streamline], [a, b]: [&End; 2], tip: Point) -> Option<[Ending; 2]> {
     if !matches!(b.stop, Stop::InkEnd | Stop::Merged) {
         return None;
     }
-    let (tip, lw) = (free_end(image, lines, a), image.line_width);
+    let lw = image.line_width;
     let arms = [arm(lines, a, b, lw)?, arm(lines, b, a, lw)?];
     let turns = arms.each_ref().map(|arm| arm.turn(tip, lw));
     if turns[0]? * turns[1]? > 0.0 {

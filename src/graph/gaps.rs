@@ -6,6 +6,7 @@
 
 use super::confidence::{PointsOfEdges, course, points_of_edges};
 use super::nodes::arm_line;
+use super::point_index::PointIndex;
 use super::{Edge, JunctionKind, StrokeGraph, Trail};
 use crate::clean::{LEAST_GRAIN, LineImage};
 use crate::drawing::Dashes;
@@ -14,8 +15,6 @@ use crate::streamline::{STEP, Tail, angle_between};
 use kurbo::{CubicBez, Line, ParamCurve, ParamCurveNearest, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 
 /// The gap that is bridged in a scan, in line widths, when nothing else is asked for. On a clean render every gap
 /// was meant.
@@ -100,14 +99,13 @@ impl<'a> Finder<'a> {
 
     /// Pairs of ends that face each other over at most `reach` pixels of paper, each end in one pair: the best first.
     fn links(&self, reach: f64) -> Vec<Link> {
-        let tree = tree_of(&self.ends, 0..self.ends.len());
+        let index = index_of(&self.ends, 0..self.ends.len());
         let mut candidates = Vec::new();
         for (a, end) in self.ends.iter().enumerate() {
             let Some(end) = end else { continue };
             let radius = reach + WIDTHS * end.width.max(self.image.line_width);
-            let near = tree.locate_within_distance([end.point.x, end.point.y], radius * radius);
-            candidates
-                .extend(near.filter(|b| b.data > a).filter_map(|b| self.link(a, b.data)).filter(|l| l.paper <= reach));
+            let near = index.near(end.point, radius).filter(|&b| b > a);
+            candidates.extend(near.filter_map(|b| self.link(a, b)).filter(|l| l.paper <= reach));
         }
         candidates.sort_by(|x, y| (x.paper + x.misfit).total_cmp(&(y.paper + y.misfit)).then(x.ends.cmp(&y.ends)));
         retain_first(&mut candidates, self.ends.len(), |link| link.ends);
@@ -248,12 +246,8 @@ pub(super) fn free_ends(graph: &StrokeGraph) -> Vec<Option<FreeEnd>> {
 }
 
 /// Some of the ends, findable by place.
-pub(super) fn tree_of(
-    ends: &[Option<FreeEnd>],
-    some: impl Iterator<Item = usize>,
-) -> RTree<GeomWithData<[f64; 2], usize>> {
-    let place = |i: usize| ends[i].as_ref().map(|end| GeomWithData::new([end.point.x, end.point.y], i));
-    RTree::bulk_load(some.filter_map(place).collect())
+pub(super) fn index_of(ends: &[Option<FreeEnd>], some: impl Iterator<Item = usize>) -> PointIndex {
+    PointIndex::new(some.filter_map(|i| Some((i, ends[i].as_ref()?.point))))
 }
 
 /// Keeps of pairs of ends, of which there are `count`, those whose ends are in none before them.

@@ -4,7 +4,7 @@
 //! line that crosses; what ends at the broad line's edge is drawn out to its middle, as a pen would have been.
 
 use super::contacts::{LineIndex, Place, width_at};
-use super::gaps::{FreeEnd, chains, facing, free_ends, retain_first, tree_of};
+use super::gaps::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::RIM;
 use crate::drawing::Dashes;
@@ -156,12 +156,11 @@ impl Finder<'_> {
     /// Pairs of ends at the edges of broad lines, given with their widths, where one line goes under and comes out, the best
     /// first, and where it crosses the middle.
     fn passages(&self, at_edge: &[(usize, f64)]) -> Vec<([usize; 2], Place, Point)> {
-        let tree = tree_of(&self.ends, at_edge.iter().map(|&(end, _)| end));
+        let index = index_of(&self.ends, at_edge.iter().map(|&(end, _)| end));
         let mut found = Vec::new();
         for &(i, width) in at_edge {
             let Some(a) = &self.ends[i] else { continue };
-            let near = tree.locate_within_distance([a.point.x, a.point.y], (2.0 * UNDER * width).powi(2));
-            for j in near.map(|near| near.data).filter(|&j| j > i) {
+            for j in index.near(a.point, 2.0 * UNDER * width).filter(|&j| j > i) {
                 if let Some(b) = &self.ends[j]
                     && let Some(misfit) = facing(self.fine, &self.ends, [i, j])
                     && let Some((place, point)) = self.first_crossing(Line::new(a.aim, b.aim))

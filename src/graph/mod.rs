@@ -18,6 +18,7 @@ pub(crate) mod layers;
 mod merge;
 mod nodes;
 mod pens;
+mod point_index;
 mod rejoin;
 mod settle;
 mod swaps;

@@ -2,14 +2,13 @@
 
 use super::contacts::{Contact, Place, Touch, around, direction, point_at};
 use super::ends::{End, end_id};
+use super::point_index::PointIndex;
 use crate::clean::{LineImage, unblurred_width};
 use crate::profile::sharp_edge;
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
 use rayon::prelude::*;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 
 /// Nodes nearer to one another than this, in line widths, are one.
 const MERGE: f64 = 0.8;
@@ -84,16 +83,13 @@ pub(super) fn resolve(
     }
     let first: Vec<Node> = solver.nodes(&mut groups);
     // Groups that were solved to the same place are one: stems that meet on a body, a corner beside a tee.
-    let places = first.iter().enumerate().map(|(i, n)| GeomWithData::new([n.position.x, n.position.y], i));
-    let tree = RTree::bulk_load(places.collect());
-    let reach = |widths: f64| (widths * image.line_width).powi(2);
+    let index = PointIndex::new(first.iter().map(|n| n.position).enumerate());
     for a in &first {
-        for near in tree.locate_within_distance([a.position.x, a.position.y], reach(ALONG_BODY)) {
-            let b = &first[near.data];
+        for b in index.near(a.position, ALONG_BODY * image.line_width).map(|b| &first[b]) {
             if b.ends[0] >= a.ends[0] {
                 continue;
             }
-            let is_close = (a.position - b.position).hypot2() <= reach(MERGE);
+            let is_close = (a.position - b.position).hypot2() <= (MERGE * image.line_width).powi(2);
             let meet = if is_close { solver.may_merge(a, b) } else { solver.meet_along_body(a, b) };
             if meet {
                 groups.union(a.ends[0], b.ends[0]);

@@ -66,6 +66,14 @@ impl<'a> Coverage<'a> {
         }
     }
 
+    /// Adds a line as a whole, and paints its ink; `heading` is that of a point.
+    pub fn lay(&mut self, streamline: u32, points: &[Point], widths: &[f64], heading: impl Fn(Point) -> Vec2) {
+        for (index, &point) in (0..).zip(points) {
+            self.add(Mark { point, heading: heading(point), streamline, index });
+        }
+        self.paint(points, widths);
+    }
+
     /// Gives the points `marks` to another streamline, in this order or, if `backwards`, the other; the first of them is its
     /// point `index`, and `sign` says whether it counts up or down.
     pub fn hand_over(&mut self, marks: Range<usize>, backwards: bool, streamline: u32, index: i32, sign: i32) {

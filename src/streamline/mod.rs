@@ -22,7 +22,7 @@ use crate::cancel::Cancel;
 use crate::clean::LineImage;
 use crate::error::{Error, Result};
 use crate::field::FrameField;
-use coverage::{Coverage, Mark};
+use coverage::Coverage;
 use islands::Island;
 use kurbo::Point;
 use rayon::prelude::*;
@@ -171,11 +171,7 @@ impl Tracing<'_> {
             let Some(ring) = rings.find(self.image, self.frames, seed) else { continue };
             let line = ring.streamline(self.image);
             let streamline = (self.straights.len() + self.streamlines.len()) as u32;
-            for (index, &point) in (0..).zip(&line.points) {
-                let heading = (point - ring.centre).normalize().turn_90();
-                self.coverage.add(Mark { point, heading, streamline, index });
-            }
-            self.coverage.paint(&line.points, &line.widths);
+            self.coverage.lay(streamline, &line.points, &line.widths, |p| ring.heading(p));
             self.streamlines.push((*rank, line));
         }
         Ok(())

@@ -4,8 +4,8 @@
 //! is told by all of its ink at once.
 
 use super::heading::{Tail, angle_between};
-use super::seeds::Seed;
-use super::straight::{Axis, INKED, Sample, pixel};
+use super::seeds::{Seed, pixel};
+use super::straight::{Axis, INKED, Sample};
 use super::{STEP, Stop, Streamline};
 use crate::clean::LineImage;
 use crate::field::FrameField;
@@ -31,9 +31,8 @@ const ROUND: f64 = 0.04;
 const ROUND_PIXELS: f64 = 0.12;
 /// How much the field may turn more on one side of a seed than on the other, as a share of both.
 const UNEVEN: f64 = 0.5;
-/// Of a circle larger than so many line widths, one seed of so many is looked at.
+/// Of a circle larger than so many line widths, a sample of the seeds is looked at.
 const SMALL: f64 = 8.0;
-const SPARSE: i64 = 5;
 /// The most places on each side that are looked at.
 const MOST_SAMPLES: f64 = 48.0;
 /// The longest arc of which nothing may be known, in radians.
@@ -56,8 +55,7 @@ impl Rings {
             return None;
         }
         let mut ring = Ring::around(image, seed)?;
-        let (x, y) = pixel(seed.point);
-        if ring.radius > SMALL * ring.width && (x + 2 * y) % SPARSE != 0 {
+        if ring.radius > SMALL * ring.width && !seed.is_of_sample() {
             return None;
         }
         let known = ring.grow(image).err();
@@ -88,6 +86,11 @@ impl Ring {
         let width = |angle: f64| self.axis(image, angle).sample(0.0).map_or(f64::NAN, |sample| sample.width);
         let (points, widths) = angles.map(|angle| (self.at(angle), width(angle))).unzip();
         Streamline { points, widths, closed: true, stops: [Stop::InkEnd; 2] }
+    }
+
+    /// The tangent at a point beside it.
+    pub fn heading(&self, p: Point) -> Vec2 {
+        (p - self.centre).normalize().turn_90()
     }
 
     fn at(&self, angle: f64) -> Point {
@@ -128,8 +131,8 @@ impl Ring {
         (ring.radius > SMALLEST * width && ring.radius < most).then_some(ring)
     }
 
-    /// The places up to `reach` radians to both sides of its start where the ink is the circle's alone; `None` where it
-    /// does not go on. Beyond `known`, the circle is a guess.
+    /// The places up to `reach` radians to both sides of its start where the ink is the circle's alone, in order;
+    /// `None` where it does not go on. Beyond `known`, the circle is a guess.
     fn samples(&self, image: &LineImage, known: f64, reach: f64) -> Option<Vec<Sample>> {
         let step = self.step(reach);
         let mut samples = Vec::new();
@@ -150,8 +153,11 @@ impl Ring {
                     samples.push(Sample { along: angle, ..sample });
                 }
             }
+            // Those before the start are found last to first.
+            if sign < 0.0 {
+                samples.reverse();
+            }
         }
-        samples.sort_by(|a, b| a.along.total_cmp(&b.along));
         Some(samples)
     }
 

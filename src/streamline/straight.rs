@@ -5,10 +5,9 @@
 
 use super::STEP;
 use super::coverage::{Coverage, Mark};
-use super::seeds::Seed;
+use super::seeds::{Seed, pixel};
 use crate::clean::LineImage;
 use crate::profile::cross_profile;
-use crate::raster::floor;
 use kurbo::{Point, Vec2};
 use std::collections::HashSet;
 use std::ops::Range;
@@ -35,8 +34,6 @@ const MEETING: f64 = 2.5;
 /// The share of its length along which it is alone: at least, and at most for the walk to be led away.
 const LEAST_ALONE: f64 = 0.2;
 const MOST_ALONE: f64 = 0.85;
-/// One seed of so many is looked at: a long line has enough.
-const SPARSE: i64 = 5;
 /// How much further out the quarters at its ends may lie than its middle, in line widths and pixels.
 const SAG: f64 = 0.02;
 const SAG_PIXELS: f64 = 0.08;
@@ -109,9 +106,8 @@ impl Straights {
     /// Lays the straight line through a seed over its ink, if there is one at which others end.
     pub fn lay(&mut self, image: &LineImage, coverage: &mut Coverage, rank: usize, seed: &Seed) {
         let (x, y) = pixel(seed.point);
-        // Along a line of any slope, all remainders follow one another.
         let mut around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
-        if (x + 2 * y) % SPARSE != 0 || around.any(|near| self.seen.contains(&near)) {
+        if !seed.is_of_sample() || around.any(|near| self.seen.contains(&near)) {
             return;
         }
         let Some((straight, is_busy)) = straight(image, seed) else { return };
@@ -120,11 +116,8 @@ impl Straights {
             return;
         }
         let (points, heading) = (straight.points(), straight.heading());
-        let (first, streamline) = (coverage.len(), self.len() as u32);
-        for (index, &point) in (0..).zip(&points) {
-            coverage.add(Mark { point, heading, streamline, index });
-        }
-        coverage.paint(&points, &vec![straight.width; points.len()]);
+        let first = coverage.len();
+        coverage.lay(self.len() as u32, &points, &vec![straight.width; points.len()], |_| heading);
         self.laid.push(Laid { rank, straight, marks: first..coverage.len(), taken: false });
     }
 
@@ -294,10 +287,6 @@ fn sag(samples: &[Sample], ends: [f64; 2]) -> f64 {
     let (inner, outer): (Vec<&Sample>, Vec<&Sample>) = samples.iter().partition(|s| (s.along - middle).abs() < quarter);
     let mean = |part: &[&Sample]| part.iter().map(|s| s.beside).sum::<f64>() / part.len() as f64;
     if inner.is_empty() || outer.is_empty() { 0.0 } else { (mean(&outer) - mean(&inner)).abs() }
-}
-
-pub(super) fn pixel(p: Point) -> (i64, i64) {
-    (floor(p.x), floor(p.y))
 }
 
 #[cfg(test)]
