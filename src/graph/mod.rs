@@ -241,9 +241,7 @@ pub(crate) struct TrailPoint {
 pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, cancel: &Cancel) -> Result<StrokeGraph> {
     let (mut dots, mut lines) = ends::split_dots(image, streamlines);
     trim::trim(image, &mut lines);
-    if image.noise > 0.0 {
-        settle::settle(image, &mut lines);
-    }
+    settle::settle(image, &mut lines);
     touches::part(image, &mut lines);
     cusps::sharpen(image, &mut lines);
     forks::straighten(image, &mut lines);

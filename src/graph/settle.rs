@@ -1,4 +1,4 @@
-//! Ends on a noisy page that face another line's body across a gap are taken back to where the pen stopped.
+//! Ends in unsure ink that face another line's body across a gap are taken back to where the pen stopped.
 //!
 //! Under the blur of a scan a narrow gap is not white, and a walk that has to bear with grain runs across it, into the
 //! other line. What the pixels say of the gap decides (`approach`).
@@ -24,8 +24,11 @@ const THINNEST: f64 = 2.4;
 /// An end that comes in at a smaller angle than this sine's (30 degrees) hides its cap in the body's ink.
 const LEAST_SINE: f64 = 0.5;
 
-/// Settles every end of a noisy page that faces a body across a gap.
+/// Settles every end in unsure ink that faces a body across a gap.
 pub(super) fn settle(image: &LineImage, lines: &mut [Streamline]) {
+    if image.noise.is_sure() {
+        return;
+    }
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
     let before_gap = |end: &End| Some((end.line, end.side, gap(image, lines, &index, end)?));
@@ -38,6 +41,9 @@ pub(super) fn settle(image: &LineImage, lines: &mut [Streamline]) {
 
 /// The middle of the gap between an end and the body that it faces, if there is one.
 fn gap(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Point> {
+    if image.noise.at(end.point).grain() < 0.5 {
+        return None;
+    }
     let (place, foot) = body(image, lines, index, end)?;
     let (_, heading) = arm_line(&end.tail, foot, image.line_width);
     if heading.cross(direction(lines, place)).abs() < LEAST_SINE {
