@@ -12,6 +12,7 @@ use super::width::{Ridge, RidgePlace};
 use crate::raster::Raster;
 use kurbo::Point;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// How far the ink can be trusted at a place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,13 +22,16 @@ pub struct Noise {
     /// Standard deviation, along a line, of the ink in its cross-section, as a share of it, beyond what sampling by pixels
     /// costs.
     pub along: f64,
+    /// Standard deviation of the blur of a line's edges, in pixels of the raster that is asked; an edge that cuts its pixels
+    /// in half has 0.8.
+    pub blur: f64,
 }
 
 impl Noise {
     /// How much this ink is to be borne with: 0 where it is as sure as a render's, 1 where it is as unsure as pencil's.
     pub fn grain(self) -> f64 {
         let ramp = |value: f64, [sure, unsure]: [f64; 2]| ((value - sure) / (unsure - sure)).clamp(0.0, 1.0);
-        ramp(self.along, ALONG).max(ramp(self.across, ACROSS))
+        ramp(self.along, ALONG).max(ramp(self.across, ACROSS)).max(ramp(self.blur, BLUR))
     }
 
     /// What holds for sure ink, for unsure ink, and between the two for ink between them.
@@ -38,8 +42,9 @@ impl Noise {
 
 /// Ink is a render's up to the first deviation and a pencil's from the second on; empirical, guarded by the sweeps of
 /// `tests/papers.rs`.
-const ALONG: [f64; 2] = [0.025, 0.04];
+const ALONG: [f64; 2] = [0.01, 0.04];
 const ACROSS: [f64; 2] = [0.1, 0.2];
+const BLUR: [f64; 2] = [0.85, 1.0];
 
 /// Sampling by pixels moves the ink of a line's cross-section by this share where the line is two pixels wide, and by the
 /// square of that in a thinner one.
@@ -83,13 +88,14 @@ pub struct NoiseMap {
     cell: f64,
     across: Raster<f32>,
     along: Raster<f32>,
+    blur: Raster<f32>,
 }
 
 impl NoiseMap {
     /// The same noise everywhere.
     pub fn even(noise: Noise) -> Self {
         let one = |value: f64| Raster::filled(1, 1, value as f32);
-        Self { cell: f64::MAX, across: one(noise.across), along: one(noise.along) }
+        Self { cell: f64::MAX, across: one(noise.across), along: one(noise.along), blur: one(noise.blur) }
     }
 
     /// The noise at a place.
@@ -97,7 +103,8 @@ impl NoiseMap {
         let (width, height) = self.across.size();
         let within = |v: f64, cells: usize| (v / self.cell).clamp(0.5, cells as f64 - 0.5);
         let place = Point::new(within(p.x, width), within(p.y, height));
-        Noise { across: self.across.sample(place).into(), along: self.along.sample(place).into() }
+        let at = |grid: &Raster<f32>| f64::from(grid.sample(place));
+        Noise { across: at(&self.across), along: at(&self.along), blur: at(&self.blur) }
     }
 
     /// The noise at the middle of a pixel.
@@ -113,7 +120,7 @@ impl NoiseMap {
     /// The mean over the page.
     pub fn mean(&self) -> Noise {
         let mean = |r: &Raster<f32>| f64::from(r.data().iter().sum::<f32>()) / r.data().len() as f64;
-        Noise { across: mean(&self.across), along: mean(&self.along) }
+        Noise { across: mean(&self.across), along: mean(&self.along), blur: mean(&self.blur) }
     }
 
     /// The least and the most [`Noise::grain`] on the page.
@@ -124,19 +131,22 @@ impl NoiseMap {
     /// The map of a resampled raster.
     pub(crate) fn scaled(mut self, scale: f64) -> Self {
         self.cell *= scale;
-        self.across.data_mut().iter_mut().for_each(|a| *a *= scale as f32);
+        let lengths = self.across.data_mut().iter_mut().chain(self.blur.data_mut());
+        lengths.for_each(|length| *length *= scale as f32);
         self
     }
 
     /// Whether every number is a possible one.
     pub(crate) fn is_valid(&self) -> bool {
-        let possible = |r: &Raster<f32>| r.data().iter().all(|v| (0.0..1e4).contains(v)) && !r.data().is_empty();
-        self.cell > 0.0 && self.across.size() == self.along.size() && possible(&self.across) && possible(&self.along)
+        let grids = [&self.across, &self.along, &self.blur];
+        let possible = |grid: &Raster<f32>| grid.data().iter().all(|v| (0.0..1e4).contains(v));
+        let like = |grid: &Raster<f32>| grid.size() == self.across.size();
+        self.cell > 0.0 && !self.across.data().is_empty() && grids.iter().all(|grid| like(grid) && possible(grid))
     }
 
     fn cells(&self) -> impl Iterator<Item = Noise> {
-        let noise = |(&across, &along): (&f32, &f32)| Noise { across: across.into(), along: along.into() };
-        self.across.data().iter().zip(self.along.data()).map(noise)
+        let grids = self.across.data().iter().zip(self.along.data()).zip(self.blur.data());
+        grids.map(|((&across, &along), &blur)| Noise { across: across.into(), along: along.into(), blur: blur.into() })
     }
 
     /// The noise of a page's raw ink at the places of its ridge, where its paper lets expect so much.
@@ -167,7 +177,7 @@ impl NoiseMap {
         let across = mean(0.0, &|place| Some(place.across));
         let rounding = shaded.map(|shaded| ROUNDING as f32 * (1.0 - shaded / SHADED as f32).max(0.0));
         let across = Raster::from_fn(columns, rows, |x, y| across[(x, y)].hypot(rounding[(x, y)]));
-        Self { cell: CELL, across, along }
+        Self { cell: CELL, across, along, blur: mean(0.0, &|place| Some(place.blur)) }
     }
 }
 
@@ -177,6 +187,7 @@ struct Measured {
     along: f64,
     /// Share of the rim that is shaded; `None` where the line keeps to the pixels, which says nothing.
     shaded: Option<f64>,
+    blur: f64,
 }
 
 impl Measured {
@@ -197,6 +208,7 @@ impl Measured {
         Some(Self {
             across: middle.deviation.min(MOST_ACROSS),
             along: (unsteady * unsteady - sampling * sampling).max(0.0).sqrt().min(MOST_ALONG),
+            blur: blur_of_steepest(sections.iter().map(|s| s.steepest).sum::<f64>() / sections.len() as f64),
             shaded: oblique.then(|| sections.iter().map(|s| s.shaded).sum::<f64>() / sections.len() as f64),
         })
     }
@@ -210,6 +222,8 @@ struct Section {
     middle: f64,
     /// Share of the rim's two sides where the ink is between paper and full.
     shaded: f64,
+    /// The largest step from one pixel to the next on the way out, as a share of the ink in the middle.
+    steepest: f64,
 }
 
 impl Section {
@@ -232,8 +246,16 @@ impl Section {
             let rim = ink.at(p + place.normal * (middle + side * place.width));
             shaded += if rim.is_some_and(|i| (BETWEEN[0]..BETWEEN[1]).contains(&i)) { 0.5 } else { 0.0 };
         }
-        (mass > 0.0).then_some(Self { mass: SPACING * mass, middle, shaded })
+        // Samples are half a pixel apart.
+        let steepest = |side: i32| (-1..count - 1).map(|k| at(side * k) - at(side * (k + 2))).fold(0.0, f32::max);
+        let steepest = f64::from(0.5 * (steepest(1) + steepest(-1)) / core.max(1e-3));
+        (mass > 0.0).then_some(Self { mass: SPACING * mass, middle, shaded, steepest })
     }
+}
+
+/// The deviation of the Gaussian blur under which an edge falls by so much from one pixel to the next.
+fn blur_of_steepest(steepest: f64) -> f64 {
+    (steepest.max(0.1) * TAU.sqrt()).recip()
 }
 
 /// The parabola that fits evenly spaced values best, over `[-1, 1]`.

@@ -22,7 +22,7 @@ pub(super) fn remove(
 ) {
     let dot = FRAC_PI_4 * line_width * line_width;
     let limit = |noise: Noise| despeckle.map_or(noise.between(SURE, UNSURE) * dot, |pixels| pixels as f64);
-    let most = Noise { along: f64::MAX, ..noise.mean() };
+    let most = Noise { along: f64::MAX, ..Noise::default() };
     if limit(most) < 1.0 || (noise.is_sure() && limit(noise.mean()) < 1.0) {
         return;
     }

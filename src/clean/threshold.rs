@@ -112,7 +112,7 @@ pub(super) fn binarise(
         let mask = Raster::filled(ink.width(), ink.height(), false);
         return (ink, mask);
     };
-    if noise.is_sure() && core > 0.8 && !shades {
+    if noise.mean().grain() < 0.5 && core > 0.8 && !shades {
         let mask = mask(&ink, noise);
         return (ink, mask);
     }
