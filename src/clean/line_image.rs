@@ -73,9 +73,8 @@ impl LineImage {
 
     /// Length of the ink that is missing on the way from one point to another, in pixels.
     fn missing(&self, a: Point, b: Point, core: f32) -> f64 {
-        let (sum, count) = way(a, b).fold((0.0, 0), |(sum, count), p| {
-            (sum + (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0), count + 1)
-        });
+        let (sum, count) = way(a, b)
+            .fold((0.0, 0), |(sum, count), p| (sum + (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0), count + 1));
         sum * (b - a).hypot() / f64::from((count - 1).max(1))
     }
 
@@ -141,7 +140,11 @@ impl LineImage {
         if !self.noise.is_valid() {
             return broken("the noise has impossible numbers".into());
         }
-        match positive.into_iter().chain([("blur", self.blur, 0.0)]).find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value)) {
+        match positive
+            .into_iter()
+            .chain([("blur", self.blur, 0.0)])
+            .find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value))
+        {
             Some((what, value, _)) => broken(format!("the {what} is {value}")),
             None => self.broad.as_ref().map_or(Ok(()), |broad| broad.validate()),
         }

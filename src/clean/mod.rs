@@ -37,6 +37,8 @@ use width::Ridge;
 
 /// A page whose lightest and darkest pixels are nearer than this is blank.
 const LEAST_CONTRAST: f32 = 0.02;
+/// Deviation of the blur that joins the grain of a pencil line, in pixels of the scan: half of a pixel's own footprint.
+const JOINING: f64 = 0.7;
 /// Ink beyond this many times that of a typical line is cut off.
 const DARKEST: f32 = 2.0;
 
@@ -67,7 +69,13 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     let inked = |noise: &NoiseMap| match &page {
         Some(page) => inks_of_groups(page, paper, noise, options.threshold),
-        None => threshold::binarise(joined(ink_of_gray(&scan.gray, inverted), noise), paper, noise, options.threshold, false),
+        None => threshold::binarise(
+            joined(ink_of_gray(&scan.gray, inverted), noise),
+            paper,
+            noise,
+            options.threshold,
+            false,
+        ),
     };
     // Lines are looked at as if all ink were sure before that is known.
     let (mut ink, mut mask) = inked(&NoiseMap::even(Noise::default()));
@@ -141,17 +149,20 @@ fn blur_of(
     noise: &NoiseMap,
     resampling: Resampling,
 ) -> f64 {
-    if noise.mean().grain() < 0.5 { resampling.blur() } else { blur::estimate(ink, mask, depth, line_width) }
+    let noise = noise.mean();
+    if noise.grain() < 0.5 {
+        return resampling.blur();
+    }
+    blur::estimate(ink, mask, depth, line_width, noise.blur.hypot(noise.between(0.0, JOINING * resampling.scale)))
 }
 
-/// Just enough smoothing to join the grain of a pencil line, where there is any: the half-width of a pixel's own
-/// footprint.
+/// Smooths where ink is unsure, just enough to join the grain of a pencil line.
 fn joined(ink: Raster<f32>, noise: &NoiseMap) -> Raster<f32> {
     let [least, most] = noise.grains();
     if most == 0.0 {
         return ink;
     }
-    let smoothed = smooth(ink.clone(), 0.7);
+    let smoothed = smooth(ink.clone(), JOINING as f32);
     if least == 1.0 {
         return smoothed;
     }

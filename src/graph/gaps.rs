@@ -73,7 +73,8 @@ pub(super) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Optio
     let finder = Finder::new(image, graph);
     let links = finder.links(most.max(DASH_GAP * image.line_width));
     let (dashed, plain) = finder.dashes(&links);
-    let short: Vec<Link> = plain.into_iter().filter(|l| l.paper <= finder.bridged(l, options.gap) && finder.is_short(l)).collect();
+    let short: Vec<Link> =
+        plain.into_iter().filter(|l| l.paper <= finder.bridged(l, options.gap) && finder.is_short(l)).collect();
     let mut seams: Vec<(Link, Option<Dashes>)> = short.into_iter().map(|link| (link, None)).collect();
     if join {
         let joined = dashed.into_iter().filter_map(|(links, dashes)| Some((links, dashes?)));
