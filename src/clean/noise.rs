@@ -280,3 +280,87 @@ impl Course {
         Self { level, slope, deviation: (square / (n - 3.0)).sqrt() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::blur::profile_at;
+    use super::super::distance::distance;
+    use super::*;
+    use kurbo::Vec2;
+
+    const SIDE: usize = 160;
+
+    /// Lines of a width at an angle in radians, 20 pixels apart, as a function of the distance from the nearest one's
+    /// middle and of the place.
+    fn lines(angle: f64, ink: impl Fn(f64, Point) -> f64) -> Raster<f32> {
+        let normal = Vec2::from_angle(angle);
+        Raster::from_fn(SIDE, SIDE, |x, y| {
+            let p = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            let across = p.to_vec2().dot(normal);
+            ink((across + 3.3).rem_euclid(20.0) - 10.0, p) as f32
+        })
+    }
+
+    fn noise(ink: &Raster<f32>) -> NoiseMap {
+        let mask = ink.map(|i| i > 0.4);
+        NoiseMap::of(ink, &Ridge::of(ink, &mask, &distance(&mask)), Paper::of(ink))
+    }
+
+    fn anti_aliased(distance: f64, width: f64) -> f64 {
+        (0.5 * width - distance.abs() + 0.5).clamp(0.0, 1.0)
+    }
+
+    /// A number of a place, about uniform in [-1, 1].
+    fn random(p: Point) -> f64 {
+        (p.x * 12.9898 + p.y * 78.233).sin() * 43758.5453 % 1.0
+    }
+
+    #[test]
+    fn a_render_is_sure_at_every_angle_and_width() {
+        for width in [1.5, 2.0, 3.0, 4.5, 8.0] {
+            for angle in (0..12).map(|k| 0.13 + 0.26 * f64::from(k)) {
+                let noise = noise(&lines(angle, |d, _| anti_aliased(d, width)));
+                assert!(noise.mean().grain() < 0.1, "{width} {angle:.2}: {:?}", noise.mean());
+            }
+        }
+    }
+
+    #[test]
+    fn two_levels_are_known_to_a_rounding() {
+        for width in [1.0, 2.0, 3.0, 5.0] {
+            for angle in (0..12).map(|k| 0.13 + 0.26 * f64::from(k)) {
+                let noise = noise(&lines(angle, |d, _| f64::from(u8::from(d.abs() < 0.5 * width)))).mean();
+                assert!(noise.across > 0.25 && noise.grain() == 1.0, "{width} {angle:.2}: {noise:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn blur_is_measured_at_the_edges() {
+        for (width, blur) in [(3.0, 1.0), (5.0, 1.0), (5.0, 1.4)] {
+            let noise = noise(&lines(0.4, |d, _| profile_at(d, width, blur))).mean();
+            assert!((noise.blur / blur - 1.0).abs() < 0.2 && noise.along < 0.01, "{width} {blur}: {noise:?}");
+        }
+    }
+
+    #[test]
+    fn grain_along_a_line_is_measured_where_it_is() {
+        for grain in [0.3, 0.6] {
+            let ink = lines(0.4, |d, p| {
+                let tooth = if p.x > 0.5 * SIDE as f64 { grain * (0.5 + 0.5 * random(p)) } else { 0.0 };
+                anti_aliased(d, 4.0) * (1.0 - tooth)
+            });
+            let noise = noise(&ink);
+            let (left, right) = (noise.at(Point::new(20.0, 80.0)), noise.at(Point::new(140.0, 80.0)));
+            assert!(left.grain() < 0.2 && right.along > 0.15 * grain, "{grain}: {left:?} {right:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_map_are_those_of_its_raster() {
+        let noise = Noise { across: 0.2, along: 0.05, blur: 1.0 };
+        let twice = NoiseMap::even(noise).scaled(2.0).at(Point::new(3.0, 900.0));
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
+        assert!(near(twice.across, 0.4) && near(twice.along, 0.05) && near(twice.blur, 2.0), "{twice:?}");
+    }
+}
