@@ -36,6 +36,7 @@ pub(super) fn ridge_pixels(mask: &Mask, depth: &Raster<f32>) -> Vec<(usize, usiz
 }
 
 /// A place on the ridge of a line.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct RidgePlace {
     pub point: Point,
     /// Unit vector across the line.
