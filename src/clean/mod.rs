@@ -1,6 +1,7 @@
 //! From a scan to the ink that is to be traced: evenly lit, thresholded, despeckled, at a known line width, with paper
 //! between lines that are close together.
 
+mod across;
 mod blur;
 mod broad;
 mod colors;
@@ -58,8 +59,8 @@ pub struct LineImage {
     pub solids: Vec<Fill>,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
-    /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
-    /// ink is grey.
+    /// The colour of each pixel *of the scan* with the paper's own taken off, and on a dark ground grey for dark ink on
+    /// white; `None` is black ink.
     pub colors: Option<Raster<[u8; 3]>>,
 }
 
@@ -71,6 +72,9 @@ const DARKEST: f32 = 2.0;
 const CLEAN_GAP: f64 = 0.15;
 /// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
 const NOISY_GAP: f64 = 0.65;
+/// Just enough smoothing to join the grain of a pencil line, in pixels of the scan: the half-width of a pixel's own
+/// footprint.
+pub(crate) const JOINING: f64 = 0.7;
 /// Bounds of the sizes of a line image, in pixels: far beyond those of any drawing.
 const LEAST_SIZE: f64 = 1e-3;
 const LARGEST_SIZE: f64 = 1e4;
@@ -173,8 +177,11 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         Invert::Auto => is_light_on_dark(&scan.gray),
     };
     cancel.check()?;
-    let page = scan.rgb.as_ref().and_then(|rgb| colors::separate(rgb, inverted));
+    let ink = ink_of_gray(&scan.gray, inverted);
     cancel.check()?;
+    let page = scan.rgb.as_ref().and_then(|rgb| colors::separate(rgb, &ink, inverted));
+    cancel.check()?;
+    let shades = ink.mapped([255; 3], |i| [(255.0 * (1.0 - i)).round() as u8; 3]);
     let noise;
     let (mut ink, mut mask) = match &page {
         Some(page) => {
@@ -182,8 +189,6 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
             inks_of_groups(page, noise, options.threshold)
         }
         None => {
-            let ink = ink_of_gray(&scan.gray, inverted);
-            cancel.check()?;
             noise = threshold::grain(&ink);
             cancel.check()?;
             threshold::binarise(joined(ink, noise), noise, options.threshold, false)
@@ -222,7 +227,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     let depth = if solids.is_empty() { depth } else { distance(&mask) };
     cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
-    let colors = page.map(|page| page.colors);
+    let colors = Some(page.map_or(shades, |page| page.colors));
     let mut image = LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
@@ -244,9 +249,8 @@ fn ink_of_gray(gray: &Raster<f32>, inverted: bool) -> Raster<f32> {
     paper::divide(&light, &paper::paper_level(&light))
 }
 
-/// Just enough smoothing to join the grain of a pencil line: the half-width of a pixel's own footprint.
 fn joined(ink: Raster<f32>, noise: f64) -> Raster<f32> {
-    if noise > 0.0 { smooth(ink, 0.7) } else { ink }
+    if noise > 0.0 { smooth(ink, JOINING as f32) } else { ink }
 }
 
 /// Each group of inks scaled and told from paper by itself, and all laid over one another.
@@ -266,7 +270,7 @@ fn inks_of_groups(page: &colors::ColorPage, noise: f64, threshold: Threshold) ->
             ink = own;
             continue;
         }
-        let (own, own_mask) = threshold::binarise(joined(own, noise), noise, threshold, true);
+        let (own, own_mask) = threshold::binarise(joined(own, noise), noise, threshold, group > 0);
         // What smoothing took from one ink where it meets another, it put into the other.
         ink.data_mut().iter_mut().zip(own.data()).for_each(|(i, &o)| *i += o);
         mask.data_mut().iter_mut().zip(own_mask.data()).for_each(|(m, &o)| *m |= o);
