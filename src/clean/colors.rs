@@ -188,12 +188,11 @@ impl Hues {
         Self { peaks: if any { peaks } else { Vec::new() }, has_grey }
     }
 
-    /// The group of ink of a tone: that of the nearest of the hues, or 0 for grey and for hues that are no ink's.
+    /// The group of ink of a tone: that of the nearest of the hues, or 0 for grey.
     fn group(&self, tone: [f32; 3]) -> u8 {
         let Some(bin) = hue(tone) else { return 0 };
         let apart = |peak: usize| peak.abs_diff(bin).min(BINS - peak.abs_diff(bin));
-        let nearest = self.peaks.iter().min_by_key(|peak| apart(peak.0)).filter(|peak| apart(peak.0) <= 2 * SPREAD);
-        nearest.map_or(0, |peak| peak.1)
+        self.peaks.iter().min_by_key(|peak| apart(peak.0)).map_or(0, |peak| peak.1)
     }
 
     /// The number of groups, grey included.

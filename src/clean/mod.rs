@@ -270,7 +270,7 @@ fn inks_of_groups(page: &colors::ColorPage, noise: f64, threshold: Threshold) ->
             ink = own;
             continue;
         }
-        let (own, own_mask) = threshold::binarise(joined(own, noise), noise, threshold, group > 0);
+        let (own, own_mask) = threshold::binarise(joined(own, noise), noise, threshold, true);
         // What smoothing took from one ink where it meets another, it put into the other.
         ink.data_mut().iter_mut().zip(own.data()).for_each(|(i, &o)| *i += o);
         mask.data_mut().iter_mut().zip(own_mask.data()).for_each(|(m, &o)| *m |= o);

@@ -149,13 +149,18 @@ impl<'a> Pens<'a> {
             Point::new(bounds.x0 + cell(k % GRID) * bounds.width(), bounds.y0 + cell(k / GRID) * bounds.height())
         });
         let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.ink.sample(*p) > 0.6);
-        median(inside.filter_map(|p| self.color_at(p)).map(|color| (color, 1.0)).collect())
+        let colors = |points: &mut dyn Iterator<Item = Point>| -> Vec<(Color, f64)> {
+            points.filter_map(|p| self.color_at(p)).map(|color| (color, 1.0)).collect()
+        };
+        // A sliver may lie between the points of the grid, but not beside its own outline.
+        median(colors(&mut { inside }))
+            .or_else(|| median(colors(&mut fill.outline.elements().iter().filter_map(|el| el.end_point()))))
     }
 
-    /// The colour of a solid region: its own, unless it cannot be told from a pen's.
+    /// The colour of a solid region: its own, unless it is nearly a pen's.
     fn of_fill(&self, color: Color) -> Color {
         let pen = self.pens[self.pen(color)];
-        if distance(place(color), place(pen)) < CELL { pen } else { self.steeped(color) }
+        if distance(place(color), place(pen)) < 0.5 * APART { pen } else { self.steeped(color) }
     }
 
     /// The number of the pen nearest to a colour.
