@@ -30,8 +30,8 @@ pub struct LineImage {
     pub solids: Vec<Fill>,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
-    /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
-    /// ink is grey.
+    /// The colour of each pixel *of the scan* with the paper's own taken off, and on a dark ground grey for dark ink on
+    /// white; `None` is black ink.
     pub colors: Option<Raster<[u8; 3]>>,
 }
 

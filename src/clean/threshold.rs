@@ -97,7 +97,7 @@ pub(super) fn mask(ink: &Raster<f32>, noise: &NoiseMap) -> Mask {
 /// against the darkest ink near it, so that light pencil lines hold beside dark ones. On a clean render what is far
 /// lighter than the lines is no line, unless its ink may come in `shades`.
 pub(super) fn binarise(
-    ink: Raster<f32>,
+    ink: &Raster<f32>,
     paper: Paper,
     noise: &NoiseMap,
     threshold: Threshold,
@@ -107,21 +107,21 @@ pub(super) fn binarise(
         let mask = ink.mapped(false, |i| f64::from(i) > t);
         return (scaled(ink, (2.0 * t) as f32), mask);
     }
-    let floor = floor(&ink, paper.grain);
-    let Some((otsu, core)) = global_levels(&ink, floor) else {
+    let floor = floor(ink, paper.grain);
+    let Some((otsu, core)) = global_levels(ink, floor) else {
         let mask = Raster::filled(ink.width(), ink.height(), false);
-        return (ink, mask);
+        return (ink.clone(), mask);
     };
     if noise.mean().grain() < 0.5 && core > 0.8 && !shades {
-        let mask = mask(&ink, noise);
-        return (ink, mask);
+        let mask = mask(ink, noise);
+        return (ink.clone(), mask);
     }
     // At the level of the mask, ink still stands out.
     let level = level(noise.mean());
     let least = floor / level;
     let core = core.max(least);
-    let nearby = nearby_core(&ink, (LIGHTEST * otsu).max(least));
-    let ink = if is_even(&ink, &nearby, otsu, core) && !has_light_lines(&ink, &nearby, level * otsu, core) {
+    let nearby = nearby_core(ink, (LIGHTEST * otsu).max(least));
+    let ink = if is_even(ink, &nearby, otsu, core) && !has_light_lines(ink, &nearby, level * otsu, core) {
         scaled(ink, core)
     } else {
         Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
@@ -155,7 +155,7 @@ fn in_bytes(ink: &Raster<f32>) -> GrayImage {
     ink.mapped(0, |i| (i * 255.0 + 0.5) as u8).into_image()
 }
 
-fn scaled(ink: Raster<f32>, core: f32) -> Raster<f32> {
+fn scaled(ink: &Raster<f32>, core: f32) -> Raster<f32> {
     ink.mapped(0.0, |i| i / core)
 }
 
