@@ -33,6 +33,22 @@ pub struct LineImage {
     /// The colour of each pixel *of the scan* with the paper's own taken off, and on a dark ground grey for dark ink on
     /// white; `None` is black ink.
     pub colors: Option<Raster<[u8; 3]>>,
+    /// What was decided about the page.
+    pub decisions: Decisions,
+}
+
+/// What was decided about a page, so that a user knows which option to move.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Decisions {
+    /// Whether light was taken for ink.
+    pub inverted: bool,
+    /// Standard deviation of the paper's grain as a share of full ink; 0 where it is flat.
+    pub grain: f64,
+    /// The darkness from which a pixel is ink, as [`crate::options::Threshold::Fixed`] takes it; `None` where that depends on
+    /// the place or on the ink.
+    pub threshold: Option<f64>,
+    /// How many inks have a hue of their own.
+    pub hues: usize,
 }
 
 /// Where lines that touch are sure, they show no gap longer than this, in pixels of the scan.

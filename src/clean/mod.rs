@@ -20,7 +20,7 @@ mod width;
 
 pub(crate) use blur::{profile_at, unblurred_width};
 pub(crate) use broad::RIM;
-pub use line_image::LineImage;
+pub use line_image::{Decisions, LineImage};
 pub use noise::{Noise, NoiseMap};
 pub(crate) use page::JOINING;
 pub(crate) use runs::runs;
@@ -36,6 +36,7 @@ use imageproc::filter::gaussian_blur_f32;
 use page::Page;
 use rayon::prelude::*;
 use resample::Resampling;
+use threshold::Told;
 use width::Ridge;
 
 /// Ink beyond this many times that of a typical line is cut off.
@@ -56,14 +57,14 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     let page = Page::of(scan, options.invert);
     cancel.check()?;
     // Lines are looked at as if all ink were sure before that is known.
-    let (mut ink, mut mask) = page.inked(&NoiseMap::even(Noise::default()), options.threshold);
+    let Told { mut ink, mut mask, mut threshold } = page.inked(&NoiseMap::even(Noise::default()), options.threshold);
     let mut depth = distance(&mask);
     cancel.check()?;
     let mut ridge = Ridge::of(&ink, &mask, &depth);
     let noise = NoiseMap::of(&ink, &ridge, page.paper);
     cancel.check()?;
     if !noise.is_sure() {
-        (ink, mask) = page.inked(&noise, options.threshold);
+        Told { ink, mask, threshold } = page.inked(&noise, options.threshold);
         depth = distance(&mask);
         cancel.check()?;
         ridge = Ridge::of(&ink, &mask, &depth);
@@ -96,8 +97,10 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     let depth = if solids.is_empty() { depth } else { distance(&mask) };
     cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
+    let decisions = page.decisions(threshold);
     let colors = Some(page.colors());
-    let mut image = LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors };
+    let mut image =
+        LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors, decisions };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
 }

@@ -1,13 +1,14 @@
 //! A page before its ink is told from paper, and after.
 
 use super::colors::{ColorPage, separate};
+use super::line_image::Decisions;
 use super::noise::NoiseMap;
 use super::paper;
 use super::smooth;
-use super::threshold::{Paper, binarise};
+use super::threshold::{Paper, Told, binarise};
 use crate::load::Scan;
 use crate::options::{Invert, Threshold};
-use crate::raster::{Mask, Raster};
+use crate::raster::Raster;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -19,7 +20,7 @@ pub(crate) const JOINING: f64 = 0.7;
 /// A page, dark on light.
 pub(super) struct Page {
     /// Whether it was light on dark.
-    pub inverted: bool,
+    inverted: bool,
     /// What is to be seen of its paper.
     pub paper: Paper,
     /// Its ink, grey, as the share of light that is lost.
@@ -43,16 +44,17 @@ impl Page {
     }
 
     /// The ink, scaled, and its mask, where it can be trusted so far.
-    pub fn inked(&self, noise: &NoiseMap, threshold: Threshold) -> (Raster<f32>, Mask) {
+    pub fn inked(&self, noise: &NoiseMap, threshold: Threshold) -> Told {
         match &self.inks {
             Some(inks) => inks_of_groups(inks, self.paper, noise, threshold),
             None => binarise(&joined(&self.ink, noise), self.paper, noise, threshold, false),
         }
     }
 
-    /// The number of inks that have a hue of their own.
-    pub fn hues(&self) -> usize {
-        self.inks.as_ref().map_or(0, |inks| usize::from(inks.groups) - 1)
+    /// What was decided about it, and the darkness from which a pixel is ink.
+    pub fn decisions(&self, threshold: Option<f64>) -> Decisions {
+        let hues = self.inks.as_ref().map_or(0, |inks| usize::from(inks.groups) - 1);
+        Decisions { inverted: self.inverted, grain: self.paper.grain, threshold, hues }
     }
 
     /// The colour of each pixel with the paper's own taken off.
@@ -90,7 +92,7 @@ fn joined<'a>(ink: &'a Raster<f32>, noise: &NoiseMap) -> Cow<'a, Raster<f32>> {
 }
 
 /// Each group of inks scaled and told from paper by itself, and all laid over one another.
-fn inks_of_groups(page: &ColorPage, paper: Paper, noise: &NoiseMap, threshold: Threshold) -> (Raster<f32>, Mask) {
+fn inks_of_groups(page: &ColorPage, paper: Paper, noise: &NoiseMap, threshold: Threshold) -> Told {
     let (width, height) = page.strength.size();
     let (mut ink, mut mask) = (Raster::filled(width, height, 0.0), Raster::filled(width, height, false));
     for group in 0..page.groups {
@@ -106,17 +108,17 @@ fn inks_of_groups(page: &ColorPage, paper: Paper, noise: &NoiseMap, threshold: T
             ink = own;
             continue;
         }
-        let (own, own_mask) = binarise(&joined(&own, noise), paper, noise, threshold, group > 0);
+        let own = binarise(&joined(&own, noise), paper, noise, threshold, group > 0);
         // What smoothing took from one ink where it meets another, it put into the other.
-        ink.data_mut().iter_mut().zip(own.data()).for_each(|(i, &o)| *i += o);
-        mask.data_mut().iter_mut().zip(own_mask.data()).for_each(|(m, &o)| *m |= o);
+        ink.data_mut().iter_mut().zip(own.ink.data()).for_each(|(i, &o)| *i += o);
+        mask.data_mut().iter_mut().zip(own.mask.data()).for_each(|(m, &o)| *m |= o);
     }
     let seams = page.seams(&ink);
     for ((x, y), full) in seams {
         ink[(x, y)] = full;
     }
     mask.data_mut().iter_mut().zip(ink.data()).for_each(|(m, &i)| *m |= i > 0.5);
-    (ink, mask)
+    Told { ink, mask, threshold: None }
 }
 
 /// Whether there is anything on the page: a scan of one tone has no ink, whatever the tone.
