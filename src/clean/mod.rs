@@ -39,7 +39,7 @@ use width::Ridge;
 #[derive(Clone, Debug)]
 pub struct LineImage {
     /// How much of each pixel is inked: 0 on paper, 1 in the middle of a typical line; anti-aliased edges are
-    /// kept. On a scan, the darkest ink has up to 2.
+    /// kept. On a scan, the darkest ink has up to 2. Of solid regions it has only the rim.
     pub ink: Raster<f32>,
     /// The pixels that count as ink of lines; solid regions are not among them.
     pub mask: Mask,
@@ -56,6 +56,8 @@ pub struct LineImage {
     pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
+    /// The pixels of these regions.
+    pub solid: Mask,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
     /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
@@ -141,7 +143,7 @@ impl LineImage {
     /// [`Error::Broken`].
     pub(crate) fn validate(&self) -> Result<()> {
         let broken = |reason: String| Err(Error::Broken { stage: "clean", reason });
-        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size())] {
+        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size()), ("solid", self.solid.size())] {
             if size != self.ink.size() {
                 return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
             }
@@ -218,12 +220,12 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         depth = distance(&mask);
     }
     cancel.check()?;
-    let solids = solids::take(&mut mask, &ink, &depth, line_width);
+    let (solid, solids) = solids::take(&mut mask, &mut ink, &depth, line_width);
     let depth = if solids.is_empty() { depth } else { distance(&mask) };
     cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let colors = page.map(|page| page.colors);
-    let mut image = LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors };
+    let mut image = LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, solid, broad: None, colors };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
 }

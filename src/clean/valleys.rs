@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 /// places to each side; empirical, guarded by the tests below.
 const COHERENT: f64 = 0.6;
 const EDGES: i64 = 4;
-/// A valley is looked for in that direction, and so often turned by so much to either side.
+/// A valley is looked for in the nearest multiple of so many radians, and in so many to either side.
 const TURN: f64 = PI / 16.0;
 const TURNS: i32 = 2;
 /// How far along a valley its profile is averaged, to either side, in line widths; and the least of it in pixels.
@@ -103,9 +103,9 @@ fn is_candidate(ink: &Raster<f32>, x: usize, y: usize, line_width: f64) -> bool 
 ///
 /// It goes on to both sides of the point: between lines that part, or in the corner of two that meet, it does not.
 fn deepest(ink: &Raster<f32>, p: Point, line_width: f64) -> Option<Valley> {
-    let straight_across = normal(ink, p, line_width)?;
+    let straight_across = (normal(ink, p, line_width)?.atan2() / TURN).round();
     let across = |turn: i32| {
-        let normal = straight_across.rotate_scale(Vec2::from_angle(TURN * f64::from(turn)));
+        let normal = Vec2::from_angle(TURN * (straight_across + f64::from(turn)));
         if !is_lower(ink, p, normal, line_width) {
             return None;
         }

@@ -71,7 +71,7 @@ impl<'a> Pens<'a> {
         let grid = (0..GRID * GRID).map(|k| {
             Point::new(bounds.x0 + cell(k % GRID) * bounds.width(), bounds.y0 + cell(k / GRID) * bounds.height())
         });
-        let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.ink.sample(*p) > 0.6);
+        let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.solid.at(*p) == Some(true));
         median(inside.filter_map(|p| self.color_at(p)).map(|color| (color, 1.0)).collect())
     }
 

@@ -105,6 +105,7 @@ mod tests {
         let depth = ink.clone();
         let image = LineImage {
             ink,
+            solid: mask.map(|_| false),
             mask,
             depth,
             line_width: 3.0,
