@@ -45,5 +45,6 @@ pub(super) fn image(mut ink: Raster<f32>, mut mask: Mask, fine: &LineImage) -> L
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let (scale, solids, colors) = (fine.scale * resampling.scale, Vec::new(), fine.colors.clone());
     let decisions = fine.decisions;
-    LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors, decisions }
+    let solid = Raster::zeroed(ink.width(), ink.height());
+    LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, solid, broad: None, colors, decisions }
 }

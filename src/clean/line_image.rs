@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct LineImage {
     /// How much of each pixel is inked: 0 on paper, 1 in the middle of a typical line; anti-aliased edges are
-    /// kept. On a scan, the darkest ink has up to 2.
+    /// kept. On a scan, the darkest ink has up to 2. Of solid regions it has only the rim.
     pub ink: Raster<f32>,
     /// The pixels that count as ink of lines; solid regions are not among them.
     pub mask: Mask,
@@ -28,6 +28,8 @@ pub struct LineImage {
     pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
+    /// The pixels of these regions.
+    pub solid: Mask,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
     /// The colour of each pixel *of the scan* with the paper's own taken off, and on a dark ground grey for dark ink on
@@ -153,7 +155,7 @@ impl LineImage {
     /// [`Error::Broken`].
     pub(crate) fn validate(&self) -> Result<()> {
         let broken = |reason: String| Err(Error::Broken { stage: "clean", reason });
-        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size())] {
+        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size()), ("solid", self.solid.size())] {
             if size != self.ink.size() {
                 return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
             }

@@ -93,14 +93,14 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         depth = distance(&mask);
     }
     cancel.check()?;
-    let solids = solids::take(&mut mask, &ink, &depth, line_width);
+    let (solid, solids) = solids::take(&mut mask, &mut ink, &depth, line_width);
     let depth = if solids.is_empty() { depth } else { distance(&mask) };
     cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let decisions = page.decisions(threshold);
     let colors = Some(page.colors());
     let mut image =
-        LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors, decisions };
+        LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, solid, broad: None, colors, decisions };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
 }

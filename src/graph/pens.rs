@@ -81,8 +81,12 @@ impl<'a> Pens<'a> {
         self.image.noise.at(p).grain() >= 0.5
     }
 
-    /// Black for what hardly differs from it.
+    /// Black for what hardly differs from it, and on a page whose ink is unsure for all grey: what its lines lack is pressure,
+    /// and paper between the grains.
     fn steeped(&self, grey: Color) -> Color {
+        if self.image.noise.mean().grain() >= 0.5 {
+            return Color::BLACK;
+        }
         let lacking = f64::from(grey.0.into_iter().max().unwrap_or(0)) / 255.0;
         if lacking < NEARLY.max(GRAINS * self.image.noise.mean().along) { Color::BLACK } else { grey }
     }
@@ -152,7 +156,7 @@ impl<'a> Pens<'a> {
         let grid = (0..GRID * GRID).map(|k| {
             Point::new(bounds.x0 + cell(k % GRID) * bounds.width(), bounds.y0 + cell(k / GRID) * bounds.height())
         });
-        let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.ink.sample(*p) > 0.6);
+        let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.solid.at(*p) == Some(true));
         let colors = |points: &mut dyn Iterator<Item = Point>| -> Vec<(Color, f64)> {
             points.filter_map(|p| self.color_at(p)).map(|color| (color, 1.0)).collect()
         };

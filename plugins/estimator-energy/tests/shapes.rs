@@ -30,6 +30,7 @@ fn bare(ink: Raster<f32>) -> LineImage {
     let depth = mask.map(|m| f32::from(u8::from(m)));
     LineImage {
         ink,
+        solid: mask.map(|_| false),
         mask,
         depth,
         line_width: 3.0,
