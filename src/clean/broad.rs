@@ -43,5 +43,6 @@ pub(super) fn image(mut ink: Raster<f32>, mut mask: Mask, fine: &LineImage) -> L
     let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { resampling.blur() };
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let (scale, solids, colors) = (fine.scale * resampling.scale, Vec::new(), fine.colors.clone());
-    LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors }
+    let edge_noise = fine.edge_noise * resampling.scale;
+    LineImage { ink, mask, depth, line_width, scale, noise, blur, edge_noise, solids, broad: None, colors }
 }

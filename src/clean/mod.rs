@@ -54,6 +54,9 @@ pub struct LineImage {
     /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render, unless it was
     /// enlarged.
     pub blur: f64,
+    /// Standard deviation of the ink's edge about a smooth line, in pixels of this raster: where a scan has two levels
+    /// alone, that of a pixel's side. 0 where greys tell more.
+    pub edge_noise: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
     /// Lines too broad to be traced beside these, as an image of their own.
@@ -71,6 +74,8 @@ const DARKEST: f32 = 2.0;
 const CLEAN_GAP: f64 = 0.15;
 /// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
 const NOISY_GAP: f64 = 0.65;
+/// Standard deviation of an edge that is told to one pixel of the scan, in pixels: `1 / sqrt 12`.
+const QUANTISATION: f64 = 0.29;
 /// Bounds of the sizes of a line image, in pixels: far beyond those of any drawing.
 const LEAST_SIZE: f64 = 1e-3;
 const LARGEST_SIZE: f64 = 1e4;
@@ -147,7 +152,8 @@ impl LineImage {
             }
         }
         let positive = [("line width", self.line_width), ("scale", self.scale)].map(|(what, v)| (what, v, LEAST_SIZE));
-        let others = [("noise", self.noise, 0.0), ("blur", self.blur, 0.0)];
+        let others =
+            [("noise", self.noise, 0.0), ("blur", self.blur, 0.0), ("noise of the edges", self.edge_noise, 0.0)];
         match positive.into_iter().chain(others).find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value)) {
             Some((what, value, _)) => broken(format!("the {what} is {value}")),
             None => self.broad.as_ref().map_or(Ok(()), |broad| broad.validate()),
@@ -173,6 +179,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
         Invert::Auto => is_light_on_dark(&scan.gray),
     };
     cancel.check()?;
+    let steps = if threshold::is_two_level(&scan.gray) { QUANTISATION } else { 0.0 };
     let page = scan.rgb.as_ref().and_then(|rgb| colors::separate(rgb, inverted));
     cancel.check()?;
     let noise;
@@ -223,7 +230,9 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let colors = page.map(|page| page.colors);
-    let mut image = LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors };
+    let edge_noise = steps * scale;
+    let mut image =
+        LineImage { ink, mask, depth, line_width, scale, noise, blur, edge_noise, solids, broad: None, colors };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
 }

@@ -28,6 +28,14 @@ const LIGHTEST: f32 = 0.8;
 /// The grain that a scan has at least; less cannot be told from rounding.
 pub(crate) const LEAST_GRAIN: f64 = 0.01;
 
+/// Whether hardly a pixel is between the lightest and the darkest: greys are fewer than one in fifty of those that are dark.
+pub(super) fn is_two_level(gray: &Raster<f32>) -> bool {
+    let (light, dark) = (|i: f32| i > 1.0 - PAPER, |i: f32| i < PAPER);
+    let [light, dark] = counts(gray, [light, dark]);
+    let least = light.min(dark);
+    least > 0 && 50 * (gray.data().len() - light - dark) < least
+}
+
 /// Spread of the paper's grain, as a share of full ink; 0 for a clean render, whose paper is flat.
 pub(super) fn grain(ink: &Raster<f32>) -> f64 {
     let [paper, flat, full] = counts(ink, [|i| i < PAPER, |i| i < FLAT, |i| i > 1.0 - PAPER]);

@@ -201,7 +201,7 @@ impl<'a> Assembly<'a> {
         }
         points.push(position(to));
         widths.push(f64::NAN);
-        Edge { points, widths }
+        Edge { points, widths, noise: self.image.edge_noise }
     }
 
     /// Lines are chained through paired ends; every line is in one trail.

@@ -111,6 +111,7 @@ mod tests {
             scale: 1.0,
             noise: 0.0,
             blur: 0.0,
+            edge_noise: 0.0,
             solids: Vec::new(),
             broad: None,
             colors: None,

@@ -36,6 +36,7 @@ fn bare(ink: Raster<f32>) -> LineImage {
         scale: 1.0,
         noise: 0.0,
         blur: 0.0,
+        edge_noise: 0.0,
         solids: Vec::new(),
         broad: None,
         colors: None,
