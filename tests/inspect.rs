@@ -72,7 +72,7 @@ fn graph() -> StrokeGraph {
         let position = Point::new(20.0 + 24.0 * i as f64, 40.0 + 10.0 * (i % 2) as f64);
         let node = graph.graph.add_node(Junction::new(position, kind));
         if let Some((before, from)) = last {
-            let edge = Edge { points: vec![from, position], widths: vec![3.0, f64::NAN] };
+            let edge = Edge { points: vec![from, position], widths: vec![3.0, f64::NAN], noise: 0.0 };
             let edge = graph.graph.add_edge(before, node, edge);
             graph.trails.push(Trail { edges: vec![(edge, false)], closed: false, color: Color::BLACK, dashes: None });
         }

@@ -30,14 +30,23 @@ pub struct Noise {
 impl Noise {
     /// How much this ink is to be borne with: 0 where it is as sure as a render's, 1 where it is as unsure as pencil's.
     pub fn grain(self) -> f64 {
-        let ramp = |value: f64, [sure, unsure]: [f64; 2]| ((value - sure) / (unsure - sure)).clamp(0.0, 1.0);
         ramp(self.along, ALONG).max(ramp(self.across, ACROSS)).max(ramp(self.blur, BLUR))
+    }
+
+    /// The part of `across` that neighbouring points of a line share, so that they do not scatter by it: that of rounding.
+    pub(crate) fn hidden(self) -> f64 {
+        self.across * ramp(self.across, ACROSS)
     }
 
     /// What holds for sure ink, for unsure ink, and between the two for ink between them.
     pub(crate) fn between(self, sure: f64, unsure: f64) -> f64 {
         sure + (unsure - sure) * self.grain()
     }
+}
+
+/// How far a value has come from one to the other.
+fn ramp(value: f64, [sure, unsure]: [f64; 2]) -> f64 {
+    ((value - sure) / (unsure - sure)).clamp(0.0, 1.0)
 }
 
 /// Ink is a render's up to the first deviation and a pencil's from the second on; empirical, guarded by the sweeps of

@@ -201,7 +201,8 @@ impl<'a> Assembly<'a> {
         }
         points.push(position(to));
         widths.push(f64::NAN);
-        Edge { points, widths }
+        let noise = points.iter().map(|&p| self.image.noise.at(p).hidden()).sum::<f64>() / points.len() as f64;
+        Edge { points, widths, noise }
     }
 
     /// Lines are chained through paired ends; every line is in one trail.

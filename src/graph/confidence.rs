@@ -194,7 +194,7 @@ mod tests {
             let points: Vec<Point> = std::iter::once(Point::ORIGIN).chain(course).collect();
             let tip = graph.graph.add_node(Junction::new(points[points.len() - 1], JunctionKind::FreeEnd));
             let widths = vec![3.0; points.len()];
-            arms.push(graph.graph.add_edge(centre, tip, Edge { points, widths }));
+            arms.push(graph.graph.add_edge(centre, tip, Edge { points, widths, noise: 0.0 }));
         }
         graph.trails.push(Trail {
             edges: vec![(arms[0], true), (arms[1], false)],
@@ -246,7 +246,7 @@ mod tests {
             let ends = [-10.0, 10.0].map(|y| p + Vec2::new(0.0, y));
             let nodes = ends.map(|p| graph.graph.add_node(Junction::new(p, JunctionKind::FreeEnd)));
             let points = vec![ends[0], p, ends[1]];
-            graph.graph.add_edge(nodes[0], nodes[1], Edge { points, widths: vec![3.0; 3] });
+            graph.graph.add_edge(nodes[0], nodes[1], Edge { points, widths: vec![3.0; 3], noise: 0.0 });
             rate(&mut graph);
             graph.graph[tip].confidence
         };

@@ -396,5 +396,5 @@ fn over(from: &FreeEnd, to: &FreeEnd) -> Edge {
     let count = (distance / STEP).ceil().max(1.0) as usize;
     let mut points: Vec<Point> = (0..=count).map(|k| curve.eval(k as f64 / count as f64)).collect();
     (points[0], points[count]) = (from.point, to.point);
-    Edge { widths: vec![f64::NAN; points.len()], points }
+    Edge { widths: vec![f64::NAN; points.len()], points, noise: 0.0 }
 }

@@ -51,6 +51,7 @@ fn scale(graph: &mut StrokeGraph, factor: f64) {
     for edge in graph.graph.edge_weights_mut() {
         edge.points.iter_mut().for_each(|p| *p = scaled(*p));
         edge.widths.iter_mut().for_each(|w| *w *= factor);
+        edge.noise *= factor;
     }
     for Dashes { dash, gap, offset } in graph.trails.iter_mut().filter_map(|trail| trail.dashes.as_mut()) {
         [dash, gap, offset].into_iter().for_each(|length| *length *= factor);
@@ -62,7 +63,7 @@ fn scale(graph: &mut StrokeGraph, factor: f64) {
 }
 
 fn open_line(edge: &Edge) -> Streamline {
-    let Edge { points, widths } = edge.clone();
+    let Edge { points, widths, .. } = edge.clone();
     Streamline { points, widths, closed: false, stops: [Stop::InkEnd; 2] }
 }
 
@@ -241,7 +242,7 @@ fn copy(
 fn piece(edge: &Edge, from: Cut, to: Cut, out: &StrokeGraph) -> Edge {
     let [start, end] = [from, to].map(|cut| out.graph[cut.node].position);
     let inner = from.at.floor() as usize + 1..(to.at.ceil() as usize).max(1);
-    let mut piece = Edge { points: vec![start], widths: vec![f64::NAN] };
+    let mut piece = Edge { points: vec![start], widths: vec![f64::NAN], noise: edge.noise };
     let mut reach = |p: Point, width: f64| {
         let before = piece.points[piece.points.len() - 1];
         let count = ((p - before).hypot() / STEP).round() as usize;

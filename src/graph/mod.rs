@@ -84,6 +84,8 @@ pub struct Edge {
     pub points: Vec<Point>,
     /// Ink width at each point in pixels; NaN where it cannot be measured.
     pub widths: Vec<f64>,
+    /// Standard deviation of the ink's edge about a smooth line, in pixels: how far the ink can be trusted.
+    pub noise: f64,
 }
 
 /// A stroke: a walk through the graph.
@@ -204,9 +206,8 @@ impl StrokeGraph {
             let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
                 continue;
             };
-            let points =
-                e.points.iter().zip(&e.widths).map(|(&point, &width)| TrailPoint { point, width, corner: false });
-            let mut piece: Vec<TrailPoint> = points.collect();
+            let point = |(&point, &width)| TrailPoint { point, width, noise: e.noise, corner: false };
+            let mut piece: Vec<TrailPoint> = e.points.iter().zip(&e.widths).map(point).collect();
             let corner = |node: petgraph::graph::NodeIndex| {
                 matches!(self.graph[node].kind, JunctionKind::Corner | JunctionKind::Branch)
             };
@@ -230,6 +231,8 @@ pub(crate) struct TrailPoint {
     pub point: Point,
     /// Ink width in pixels; NaN where it cannot be measured.
     pub width: f64,
+    /// Standard deviation of the ink's edge about a smooth line, in pixels.
+    pub noise: f64,
     /// Whether the line may turn sharply here.
     pub corner: bool,
 }

@@ -81,12 +81,8 @@ impl<'a> Pens<'a> {
         self.image.noise.at(p).grain() >= 0.5
     }
 
-    /// Black for what hardly differs from it, and on a page whose ink is unsure for all grey: what its lines lack is pressure,
-    /// and paper between the grains.
+    /// Black for what hardly differs from it.
     fn steeped(&self, grey: Color) -> Color {
-        if self.image.noise.mean().grain() >= 0.5 {
-            return Color::BLACK;
-        }
         let lacking = f64::from(grey.0.into_iter().max().unwrap_or(0)) / 255.0;
         if lacking < NEARLY.max(GRAINS * self.image.noise.mean().along) { Color::BLACK } else { grey }
     }
@@ -116,7 +112,9 @@ impl<'a> Pens<'a> {
     fn reading(&self, p: Point, heading: Vec2, width: f64, length: f64) -> Option<Reading> {
         let (image, color) = (self.image, self.color_at(p)?);
         if self.is_unsure(p) {
-            return Some(Reading { color: self.unblurred(color, width), full: true, length });
+            // What grey lines lack of black on paper is pressure, and paper between the grains.
+            let color = Some(self.unblurred(color, width)).filter(|color| !is_grey(*color)).unwrap_or(Color::BLACK);
+            return Some(Reading { color, full: true, length });
         }
         let normal = if heading.hypot2() > 0.0 { heading.normalize().turn_90() } else { Vec2::new(1.0, 0.0) };
         let beside = |offset: f64| [-offset, offset].map(|offset| image.ink.sample(p + normal * offset));

@@ -56,6 +56,8 @@ struct EdgeItem {
     points: Vec<[f64; 2]>,
     #[serde(default)]
     widths: Option<Vec<Option<f64>>>,
+    #[serde(default)]
+    noise: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -163,11 +165,12 @@ pub fn to_json(graph: &StrokeGraph) -> String {
     });
     let edges = edge_ids.iter().filter_map(|(&e, &id)| {
         let (from, to) = graph.graph.edge_endpoints(e)?;
-        let Edge { points, widths } = &graph.graph[e];
+        let Edge { points, widths, noise } = &graph.graph[e];
         let points = points.iter().map(|&p| pair(p)).collect();
         let widths = widths.iter().map(|w| w.is_finite().then(|| to_scan(*w))).collect();
         let (from, to) = (node_ids[&from], node_ids[&to]);
-        Some(line(&EdgeItem { id, from, to, points, widths: Some(widths) }))
+        let noise = round(noise / page.scale, FINE_DECIMALS);
+        Some(line(&EdgeItem { id, from, to, points, widths: Some(widths), noise }))
     });
     let strokes = graph.trails.iter().map(|trail| {
         let edges = trail.edges.iter().map(|&(e, reversed)| Step { edge: edge_ids[&e], reversed }).collect();
@@ -341,7 +344,8 @@ impl Reader {
         };
         let widths = widths.iter().enumerate().map(width).collect::<std::result::Result<_, Wrong>>()?;
         follow(&mut points, self.graph.graph[from].position, self.graph.graph[to].position, MOVED * self.scale);
-        let index = self.graph.graph.add_edge(from, to, Edge { points, widths });
+        let noise = self.scale * within(format!("{place}.noise"), item.noise, 0.0, FARTHEST)?;
+        let index = self.graph.graph.add_edge(from, to, Edge { points, widths, noise });
         match self.edges.insert(item.id, index) {
             None => Ok(()),
             Some(_) => Err((format!("{place}.id"), format!("there are two edges {}", item.id))),
