@@ -41,9 +41,10 @@ pub(super) fn image(mut ink: Raster<f32>, mut mask: Mask, fine: &LineImage) -> L
         depth = distance(&mask);
         line_width = Ridge::of(&ink, &mask, &depth).median_width();
     }
-    let blur = blur_of(&ink, &mask, &depth, line_width, &noise, resampling);
+    let scale = fine.scale * resampling.scale;
+    let blur = blur_of(&ink, &mask, &depth, line_width, noise.mean(), resampling, scale);
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
-    let (scale, solids, colors) = (fine.scale * resampling.scale, Vec::new(), fine.colors.clone());
+    let (solids, colors) = (Vec::new(), fine.colors.clone());
     let decisions = fine.decisions;
     let solid = Raster::zeroed(ink.width(), ink.height());
     LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, solid, broad: None, colors, decisions }

@@ -21,7 +21,7 @@ pub struct LineImage {
     pub line_width: f64,
     /// Pixels of this raster per pixel of the scan.
     pub scale: f64,
-    /// How far the ink of lines can be trusted, place by place, in pixels of this raster.
+    /// How far the ink of lines can be trusted, by place in this raster; lengths are in pixels of the scan.
     pub noise: NoiseMap,
     /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render, unless it was
     /// enlarged.

@@ -86,7 +86,7 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     specks::remove(&mut mask, &mut ink, line_width, &noise, options.despeckle);
     cancel.check()?;
-    let blur = blur_of(&ink, &mask, &depth, line_width, &noise, resampling);
+    let blur = blur_of(&ink, &mask, &depth, line_width, noise.mean(), resampling, scale);
     let broad = solids::take_broad(&mut mask, &depth, unblurred_width(line_width, blur));
     let broad = broad.map(|region| (broad::take(&mut ink, &mut mask, &region, &noise), region));
     if broad.is_some() {
@@ -112,20 +112,21 @@ fn measured(ink: &Raster<f32>, mask: &Mask) -> (Raster<f32>, f64) {
     (depth, line_width)
 }
 
-/// Standard deviation of the lines' blur: sure ink has none but that of resampling.
+/// Standard deviation of the lines' blur in a raster of a scale: sure ink has none but that of resampling.
 fn blur_of(
     ink: &Raster<f32>,
     mask: &Mask,
     depth: &Raster<f32>,
     line_width: f64,
-    noise: &NoiseMap,
+    noise: Noise,
     resampling: Resampling,
+    scale: f64,
 ) -> f64 {
-    let noise = noise.mean();
     if noise.grain() < 0.5 {
         return resampling.blur();
     }
-    blur::estimate(ink, mask, depth, line_width, noise.blur.hypot(noise.between(0.0, JOINING * resampling.scale)))
+    let expected = scale * noise.blur.hypot(noise.between(0.0, JOINING));
+    blur::estimate(ink, mask, depth, line_width, expected)
 }
 
 /// Gaussian blur.

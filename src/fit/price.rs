@@ -20,7 +20,7 @@ pub(super) const QUARTER_STEPS: f64 = 0.072;
 const TREMOR: f64 = 8.0;
 /// A wave that is higher than this share of the line's width, or longer than so many widths, is no tremor but what was to be
 /// drawn.
-const HIGHEST: f64 = 0.15;
+const HIGHEST: f64 = 0.2;
 const LONGEST: f64 = 8.0;
 /// Points of less weight than this lie inside junctions and tell no wave's height.
 const LEAST_WEIGHT: f64 = 0.5;

@@ -201,7 +201,8 @@ impl<'a> Assembly<'a> {
         }
         points.push(position(to));
         widths.push(f64::NAN);
-        let noise = points.iter().map(|&p| self.image.noise.at(p).hidden()).sum::<f64>() / points.len() as f64;
+        let hidden = points.iter().map(|&p| self.image.noise.at(p).hidden()).sum::<f64>();
+        let noise = self.image.scale * hidden / points.len() as f64;
         Edge { points, widths, noise }
     }
 
