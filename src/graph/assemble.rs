@@ -1,12 +1,12 @@
 //! The graph from resolved lines.
 
-use super::contacts::{LineIndex, Place, around, direction, piece_count};
-use super::ends::{End, end_id};
-use super::nodes::Node;
-use super::point_index::PointIndex;
-use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::drawing::Color;
+use crate::graph::lines::end::{End, end_id};
+use crate::graph::point_index::PointIndex;
+use crate::graph::resolve::contacts::{LineIndex, Place, around, direction, piece_count};
+use crate::graph::resolve::node::Node;
+use crate::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::options::Options;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point};

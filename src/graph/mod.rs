@@ -5,26 +5,13 @@
 //! other ends a corner or a branch, in the open a free end half a width short of the edge. Then arms are paired
 //! into strokes, which end where their colour does (`pens`) and go on behind short breaks in their ink (`gaps`).
 
-mod approach;
 mod assemble;
-mod confidence;
-mod contacts;
-mod course;
-mod cusps;
-mod ends;
-mod forks;
-mod gaps;
-pub(crate) mod layers;
-mod merge;
-mod nodes;
+mod finish;
+mod lines;
 mod pens;
 mod point_index;
-mod rejoin;
-mod settle;
-mod swaps;
-mod taper;
-mod touches;
-mod trim;
+mod repair;
+mod resolve;
 
 use crate::cancel::Cancel;
 use crate::clean::LineImage;
@@ -32,11 +19,19 @@ use crate::drawing::{Color, Dashes, Fill};
 use crate::error::Result;
 use crate::options::{Options, StrokeWidth};
 use crate::streamline::Streamline;
+use finish::{confidence, gaps, taper};
 use kurbo::Point;
+use lines::end as ends;
 use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
+use repair::{
+    cusp as cusps, fork as forks, gap_before_body as settle, overlap as trim, swapped_arms as swaps,
+    tangency as touches, tangent_end as merge, wrong_arm as rejoin,
+};
+use resolve::{contacts, node as nodes};
 use serde::{Deserialize, Serialize};
 
-pub use confidence::DOUBTFUL;
+pub use finish::confidence::DOUBTFUL;
+pub(crate) use finish::layers;
 
 /// What meets at a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

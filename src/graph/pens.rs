@@ -3,10 +3,10 @@
 //! Colours are read in the middle of lines, where they are single, and grouped into few pens. Lines are cut where
 //! their colour changes for good, and strokes end there.
 
-use super::contacts::Place;
-use super::{Dot, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::drawing::{Color, Fill};
+use crate::graph::resolve::contacts::Place;
+use crate::graph::{Dot, StrokeGraph, Trail};
 use crate::raster::Raster;
 use crate::streamline::{STEP, Streamline};
 use kurbo::{Point, Shape};

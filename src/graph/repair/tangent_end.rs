@@ -6,11 +6,11 @@
 //! and `y = m u + c u^2 / 2` for a line that meets it at an angle. The `s0` that explains the edge best, in least squares,
 //! is the node; up to where the line is alone again, its middle is what was solved.
 
-use super::contacts::{LineIndex, Place, direction, direction_at, point_at, width_at};
-use super::course::Ending;
-use super::ends::{End, ends};
-use super::nodes::arm_line;
 use crate::clean::LineImage;
+use crate::graph::lines::course::Ending;
+use crate::graph::lines::end::{End, ends};
+use crate::graph::resolve::contacts::{LineIndex, Place, direction, direction_at, point_at, width_at};
+use crate::graph::resolve::node::arm_line;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
@@ -46,7 +46,7 @@ const JUMP: f64 = 0.3;
 const FEWEST: usize = 6;
 
 /// Leads every end that runs into a body at a small angle to the place where it meets the body.
-pub(super) fn merge(image: &LineImage, lines: &mut [Streamline]) {
+pub(in crate::graph) fn merge(image: &LineImage, lines: &mut [Streamline]) {
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
     let is_open = |end: &&End| !end.stop.is_cut_off() && !matches!(end.stop, Stop::Settled | Stop::Joined);
@@ -149,7 +149,7 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
 }
 
 /// The lines that an end runs along, the nearest first, each where it is nearest.
-pub(super) fn bodies(lines: &[Streamline], index: &LineIndex, end: &End, radius: f64) -> Vec<Place> {
+pub(in crate::graph) fn bodies(lines: &[Streamline], index: &LineIndex, end: &End, radius: f64) -> Vec<Place> {
     let mut bodies: Vec<Place> = Vec::new();
     for (place, ..) in index.near(end.point, radius) {
         let direction = direction_at(&lines[place.line], place.at as usize);

@@ -7,8 +7,8 @@
 //! The confidence is the product. A free end may have been meant to touch what it ends near; it is as sure as the
 //! paper between is wide.
 
-use super::nodes::{arm_line, continuation};
-use super::{JunctionKind, StrokeGraph};
+use crate::graph::resolve::node::{arm_line, continuation};
+use crate::graph::{JunctionKind, StrokeGraph};
 use crate::streamline::{STEP, Tail};
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
@@ -41,7 +41,7 @@ struct Arm {
 }
 
 /// Sets the confidence of every node.
-pub(super) fn rate(graph: &mut StrokeGraph) {
+pub(in crate::graph) fn rate(graph: &mut StrokeGraph) {
     let (points, links) = (points_of_edges(graph), links(graph));
     let nodes: Vec<NodeIndex> = graph.graph.node_indices().collect();
     let ratings: Vec<(NodeIndex, f64)> = nodes
@@ -61,10 +61,10 @@ pub(super) fn rate(graph: &mut StrokeGraph) {
     }
 }
 
-pub(super) type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;
+pub(in crate::graph) type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;
 
 /// Points of all edges, findable by place; empty where no line ends free.
-pub(super) fn points_of_edges(graph: &StrokeGraph) -> PointsOfEdges {
+pub(in crate::graph) fn points_of_edges(graph: &StrokeGraph) -> PointsOfEdges {
     if !graph.graph.node_weights().any(|n| n.kind == JunctionKind::FreeEnd) {
         return RTree::new();
     }
@@ -118,7 +118,7 @@ fn arms(graph: &StrokeGraph, node: NodeIndex) -> Vec<Arm> {
 }
 
 /// The course of an edge towards one of its ends.
-pub(super) fn course(graph: &StrokeGraph, edge: EdgeIndex, at_source: bool) -> Option<Tail> {
+pub(in crate::graph) fn course(graph: &StrokeGraph, edge: EdgeIndex, at_source: bool) -> Option<Tail> {
     let edge = &graph.graph[edge];
     let n = edge.points.len();
     let index = |k: usize| if at_source { k } else { n - 1 - k };

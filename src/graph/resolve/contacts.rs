@@ -1,8 +1,8 @@
 //! Where the ends of lines meet other lines.
 
-use super::ends::{End, end_id};
-use super::point_index::PointIndex;
 use crate::clean::LineImage;
+use crate::graph::lines::end::{End, end_id};
+use crate::graph::point_index::PointIndex;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point, Vec2};
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ const OVERLAP: f64 = 10.0;
 
 /// A line's place: index of the line and a fractional index of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(in crate::graph) struct Place {
     pub line: usize,
     pub at: f64,
 }
@@ -32,7 +32,7 @@ const BLUNT_ON_CLEAN: f64 = 3.0;
 
 /// What an end meets.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Touch {
+pub(in crate::graph) enum Touch {
     /// Another end (its number).
     End(usize),
     /// The body of a line.
@@ -41,7 +41,7 @@ pub(super) enum Touch {
 
 /// An end that stops at a line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Contact {
+pub(in crate::graph) struct Contact {
     /// Number of the end.
     pub end: usize,
     pub touch: Touch,
@@ -53,7 +53,7 @@ pub(super) struct Contact {
 type Piece = GeomWithData<rstar::primitives::Line<[f64; 2]>, (usize, usize)>;
 
 /// All pieces of all lines, findable by place.
-pub(super) struct LineIndex<'a> {
+pub(in crate::graph) struct LineIndex<'a> {
     lines: &'a [Streamline],
     tree: RTree<Piece>,
 }
@@ -107,11 +107,11 @@ impl<'a> LineIndex<'a> {
 }
 
 /// Number of straight pieces of a line; a closed line has one more that leads back.
-pub(super) fn piece_count(line: &Streamline) -> usize {
+pub(in crate::graph) fn piece_count(line: &Streamline) -> usize {
     if line.closed { line.points.len() } else { line.points.len().saturating_sub(1) }
 }
 
-pub(super) fn piece(line: &Streamline, k: usize) -> Line {
+pub(in crate::graph) fn piece(line: &Streamline, k: usize) -> Line {
     Line::new(line.points[k], line.points[(k + 1) % line.points.len()])
 }
 
@@ -128,14 +128,14 @@ fn intersect(a: Line, b: Line) -> Option<(f64, f64)> {
 }
 
 /// The point of a line at a fractional index.
-pub(super) fn point_at(line: &Streamline, at: f64) -> Point {
+pub(in crate::graph) fn point_at(line: &Streamline, at: f64) -> Point {
     let n = line.points.len();
     let k = at.floor() as usize;
     line.points[k % n].lerp(line.points[(k + 1).min(if line.closed { k + 1 } else { n - 1 }) % n], at - at.floor())
 }
 
 /// Indices of the points within `reach` pixels along a line from a fractional index.
-pub(super) fn around(line: &Streamline, at: f64, reach: f64) -> impl Iterator<Item = usize> {
+pub(in crate::graph) fn around(line: &Streamline, at: f64, reach: f64) -> impl Iterator<Item = usize> {
     let (n, closed) = (line.points.len() as i64, line.closed);
     let (at, span) = (at.round() as i64, (reach / STEP) as i64);
     let indices = (at - span..=at + span).map(move |k| if closed { k.rem_euclid(n) } else { k });
@@ -143,12 +143,12 @@ pub(super) fn around(line: &Streamline, at: f64, reach: f64) -> impl Iterator<It
 }
 
 /// Direction of a line at a place.
-pub(super) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
+pub(in crate::graph) fn direction(lines: &[Streamline], place: Place) -> Vec2 {
     direction_at(&lines[place.line], place.at as usize)
 }
 
 /// Direction of a line from one of its points on.
-pub(super) fn direction_at(line: &Streamline, k: usize) -> Vec2 {
+pub(in crate::graph) fn direction_at(line: &Streamline, k: usize) -> Vec2 {
     let n = line.points.len();
     let k = k.min(piece_count(line).saturating_sub(1));
     let (a, b) = if line.closed {
@@ -161,7 +161,7 @@ pub(super) fn direction_at(line: &Streamline, k: usize) -> Vec2 {
 }
 
 /// Mean width of a line around a place; the typical one where it cannot be measured.
-pub(super) fn width_at(lines: &[Streamline], place: Place, typical: f64) -> f64 {
+pub(in crate::graph) fn width_at(lines: &[Streamline], place: Place, typical: f64) -> f64 {
     let widths = &lines[place.line].widths;
     let k = (place.at as usize).min(widths.len() - 1);
     let around = &widths[k.saturating_sub(20)..(k + 20).min(widths.len())];
@@ -170,7 +170,7 @@ pub(super) fn width_at(lines: &[Streamline], place: Place, typical: f64) -> f64 
 }
 
 /// What each end stops at; an end without a contact is free.
-pub(super) fn contacts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]) -> Vec<Contact> {
+pub(in crate::graph) fn contacts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>]) -> Vec<Contact> {
     let index = LineIndex::new(lines);
     let finder = Finder { image, lines, ends, index };
     let of_end = |end: &Option<End>| end.iter().flat_map(|end| finder.of_end(end)).collect::<Vec<_>>();

@@ -5,11 +5,11 @@
 //! other side does, the body is cut there, and its parts are paired anew with the stem. So it is where two corners share
 //! their vertex, and a walk ran by from one to the other.
 
-use super::contacts::Place;
-use super::course::{course, run};
-use super::ends::End;
-use super::nodes::{Node, continuation, two_corners};
 use crate::clean::LineImage;
+use crate::graph::lines::course::{course, run};
+use crate::graph::lines::end::End;
+use crate::graph::resolve::contacts::Place;
+use crate::graph::resolve::node::{Node, continuation, two_corners};
 use crate::streamline::{STEP, Stop, Streamline};
 
 /// What the stem must gain over the body's own continuation, radians.
@@ -23,7 +23,12 @@ const OVER: f64 = 5.0;
 const ROUND: f64 = 0.125;
 
 /// The places at which bodies should be cut.
-pub(super) fn cuts(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], nodes: &[Node]) -> Vec<Place> {
+pub(in crate::graph) fn cuts(
+    image: &LineImage,
+    lines: &[Streamline],
+    ends: &[Option<End>],
+    nodes: &[Node],
+) -> Vec<Place> {
     nodes.iter().filter_map(|node| cut(image, lines, ends, node)).collect()
 }
 
@@ -49,7 +54,7 @@ fn cut(image: &LineImage, lines: &[Streamline], ends: &[Option<End>], node: &Nod
 }
 
 /// The lines with the given places cut; every part keeps the line's own stops at its outer ends.
-pub(super) fn cut_lines(lines: &[Streamline], places: &[Place]) -> Vec<Streamline> {
+pub(in crate::graph) fn cut_lines(lines: &[Streamline], places: &[Place]) -> Vec<Streamline> {
     let mut of_line = vec![Vec::new(); lines.len()];
     for place in places {
         of_line[place.line].push((place.at.round() as usize).min(lines[place.line].points.len() - 1));

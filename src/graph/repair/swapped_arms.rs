@@ -4,9 +4,9 @@
 //! arm. The four arms, as they run outside the shared ink, are compared: when another pairing turns less than the
 //! walks did, both lines are cut in the middle of it, and their parts are paired anew.
 
-use super::contacts::{LineIndex, Place};
-use super::course::{LARGEST, MARGIN, course, departure, run};
 use crate::clean::LineImage;
+use crate::graph::lines::course::{LARGEST, MARGIN, course, departure, run};
+use crate::graph::resolve::contacts::{LineIndex, Place};
 use crate::streamline::{STEP, Streamline};
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ struct Shared {
 }
 
 /// The places at which lines should be cut.
-pub(super) fn cuts(image: &LineImage, lines: &[Streamline]) -> Vec<Place> {
+pub(in crate::graph) fn cuts(image: &LineImage, lines: &[Streamline]) -> Vec<Place> {
     let index = LineIndex::new(lines);
     let of_line = |i: usize| shared(image, lines, &index, i).into_iter().filter_map(|s| cut(image, lines, s));
     let cuts: Vec<[Place; 2]> = (0..lines.len()).into_par_iter().flat_map_iter(of_line).collect();

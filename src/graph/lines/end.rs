@@ -1,8 +1,8 @@
 //! The ends of streamlines, before they are resolved.
 
-use super::Dot;
 use crate::clean::LineImage;
 use crate::drawing::Color;
+use crate::graph::Dot;
 use crate::streamline::{STEP, Stop, Streamline, Tail};
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ const LASTING: f64 = 0.5;
 
 /// One end of a line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct End {
+pub(in crate::graph) struct End {
     /// Index of the line.
     pub line: usize,
     /// 0 for the first point, 1 for the last.
@@ -39,12 +39,12 @@ pub(super) struct End {
 }
 
 /// Number of an end: two per line.
-pub(super) fn end_id(line: usize, side: usize) -> usize {
+pub(in crate::graph) fn end_id(line: usize, side: usize) -> usize {
     2 * line + side
 }
 
 /// The ends of all lines, `2 * line + side`; `None` for closed lines.
-pub(super) fn ends(image: &LineImage, lines: &[Streamline]) -> Vec<Option<End>> {
+pub(in crate::graph) fn ends(image: &LineImage, lines: &[Streamline]) -> Vec<Option<End>> {
     let both = |line: usize| [0, 1].map(|side| end(image, lines, line, side));
     (0..lines.len()).into_par_iter().flat_map_iter(both).collect()
 }
@@ -100,7 +100,7 @@ fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
 }
 
 /// Takes out lines that are dots: about as long, caps included, as they are wide, and touching nothing else.
-pub(super) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<Dot>, Vec<Streamline>) {
+pub(in crate::graph) fn split_dots(image: &LineImage, streamlines: &[Streamline]) -> (Vec<Dot>, Vec<Streamline>) {
     let mut dots = Vec::new();
     let mut lines = Vec::new();
     for streamline in streamlines {

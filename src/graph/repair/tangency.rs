@@ -5,10 +5,10 @@
 //! together: arms that are one line go on in each other's direction and bend alike. Where the walks say otherwise, the
 //! shared stretch is taken out of them, and the arms are joined anew.
 
-use super::contacts::LineIndex;
-use super::course::{LARGEST, MARGIN, THIN, bridge, course, departure, run};
-use super::nodes::arm_line;
 use crate::clean::LineImage;
+use crate::graph::lines::course::{LARGEST, MARGIN, THIN, bridge, course, departure, run};
+use crate::graph::resolve::contacts::LineIndex;
+use crate::graph::resolve::node::arm_line;
 use crate::streamline::{STEP, Stop, Streamline, Tail};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
@@ -55,7 +55,7 @@ struct Arm {
 type Link = [Arm; 2];
 
 /// Joins the arms of every touch as they belong together.
-pub(super) fn part(image: &LineImage, lines: &mut Vec<Streamline>) {
+pub(in crate::graph) fn part(image: &LineImage, lines: &mut Vec<Streamline>) {
     let turned: Vec<Streamline> = lines.iter().map(start_alone).collect();
     let stretches: Vec<Stretch> = (0..lines.len()).flat_map(|i| stretches(image, &turned, i)).collect();
     if stretches.is_empty() {

@@ -3,11 +3,11 @@
 //! Long before such a cusp the two inks are one, and what shows of the lines bends towards its axis. Drawn straight on,
 //! they would meet too early, in a corner, and leave the tip bare.
 
-use super::course::{Ending, bridge, course, run};
-use super::ends::{End, ends};
-use super::nodes::{arm_line, free_end};
-use super::point_index::PointIndex;
 use crate::clean::LineImage;
+use crate::graph::lines::course::{Ending, bridge, course, run};
+use crate::graph::lines::end::{End, ends};
+use crate::graph::point_index::PointIndex;
+use crate::graph::resolve::node::{arm_line, free_end};
 use crate::profile::cross_profile;
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
@@ -33,7 +33,7 @@ const LEAST_BEND: f64 = 0.02;
 const INKED: f32 = 0.4;
 
 /// Leads both lines of every cusp to its tip.
-pub(super) fn sharpen(image: &LineImage, lines: &mut [Streamline]) {
+pub(in crate::graph) fn sharpen(image: &LineImage, lines: &mut [Streamline]) {
     let ends: Vec<End> = ends(image, lines).into_iter().flatten().collect();
     let index = PointIndex::new(ends.iter().map(|end| end.point).enumerate());
     let mut taken = vec![false; ends.len()];

@@ -4,16 +4,16 @@ use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{CubicBez, ParamCurve, Point};
 
 /// Of thinner pens than this, in pixels, courses are as long as of this one.
-pub(super) const THIN: f64 = 3.0;
+pub(in crate::graph) const THIN: f64 = 3.0;
 /// How far from an arc the way from one arm to another may be, and what another pairing of arms must gain: [`departure`].
-pub(super) const LARGEST: f64 = 0.4;
-pub(super) const MARGIN: f64 = 0.2;
+pub(in crate::graph) const LARGEST: f64 = 0.4;
+pub(in crate::graph) const MARGIN: f64 = 0.2;
 /// Weight of a turn that the arms' curvature does not explain; in narrow bends it is measured too small.
 const BENT: f64 = 0.5;
 
 /// Indices of a line's points from so many pixels after one of them on, over that many; `step` is 1 or -1, the way that
 /// they are taken.
-pub(super) fn run(line: &Streamline, at: i64, step: i64, from: f64, over: f64) -> Vec<usize> {
+pub(in crate::graph) fn run(line: &Streamline, at: i64, step: i64, from: f64, over: f64) -> Vec<usize> {
     let (from, to) = ((from / STEP) as i64, ((from + over) / STEP) as i64);
     let n = line.points.len() as i64;
     let index = |k: i64| if line.closed { (at + step * k).rem_euclid(n) } else { at + step * k };
@@ -22,7 +22,7 @@ pub(super) fn run(line: &Streamline, at: i64, step: i64, from: f64, over: f64) -
 }
 
 /// The course of a run of points, towards its first.
-pub(super) fn course(line: &Streamline, run: &[usize]) -> Option<Tail> {
+pub(in crate::graph) fn course(line: &Streamline, run: &[usize]) -> Option<Tail> {
     let oldest_first: Vec<Point> = run.iter().rev().map(|&k| line.points[k]).collect();
     (oldest_first.len() > 5).then(|| Tail::fit(&oldest_first, 0.1)).flatten()
 }
@@ -30,7 +30,7 @@ pub(super) fn course(line: &Streamline, run: &[usize]) -> Option<Tail> {
 /// How far the way from one arm to another, both heading into it, is from an arc that goes on as both bend, in radians: an
 /// arc leaves its chord by the angle by which it comes back to it, and by both together it turns as much as its curvature
 /// says.
-pub(super) fn departure(a: &Tail, b: &Tail) -> f64 {
+pub(in crate::graph) fn departure(a: &Tail, b: &Tail) -> f64 {
     let chord = b.point - a.point;
     let (leaving, coming) = (angle_between(a.heading, chord), angle_between(chord, -b.heading));
     let bend = 0.5 * (a.curvature - b.curvature) * chord.hypot();
@@ -38,7 +38,7 @@ pub(super) fn departure(a: &Tail, b: &Tail) -> f64 {
 }
 
 /// From one arm to another, smoothly; neither end is included.
-pub(super) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
+pub(in crate::graph) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
     let chord = (b.point - a.point).hypot();
     let third = chord / 3.0;
     let curve = CubicBez::new(a.point, a.point + a.heading * third, b.point + b.heading * third, b.point);
@@ -47,7 +47,7 @@ pub(super) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
 }
 
 /// The last points of a line, from where it meets another on, and how many points of its own they replace.
-pub(super) struct Ending {
+pub(in crate::graph) struct Ending {
     pub points: Vec<Point>,
     pub replaced: usize,
 }

@@ -3,11 +3,11 @@
 //! Where a fine line runs under a broad one its ink cannot be seen. What comes out on the other side as it went in is one
 //! line that crosses; what ends at the broad line's edge is drawn out to its middle, as a pen would have been.
 
-use super::contacts::{LineIndex, Place, width_at};
 use super::gaps::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
-use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::RIM;
 use crate::drawing::Dashes;
+use crate::graph::resolve::contacts::{LineIndex, Place, width_at};
+use crate::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Affine, Line, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};

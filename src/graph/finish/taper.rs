@@ -4,8 +4,8 @@
 //! lose the width for good, and goes on straight. For outlines such stretches are measured again: each point is put in
 //! the middle of its own ink, across the stroke, and gets the width found there.
 
-use super::{Edge, JunctionKind, StrokeGraph};
 use crate::clean::LineImage;
+use crate::graph::{Edge, JunctionKind, StrokeGraph};
 use crate::profile::cross_profile;
 use crate::streamline::STEP;
 use kurbo::{Point, Vec2};
@@ -21,7 +21,7 @@ const ROUNDS: usize = 3;
 const NEAR: usize = 40;
 
 /// Measures long stretches again, and sets free ends half of their new width short of the ink's.
-pub(super) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
+pub(in crate::graph) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
     let edges: Vec<EdgeIndex> = graph.graph.edge_indices().collect();
     for e in edges {
         let Some((a, b)) = graph.graph.edge_endpoints(e) else { continue };

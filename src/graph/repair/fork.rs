@@ -2,13 +2,13 @@
 //!
 //! Long before two inks part, a walk cannot tell the one from the other: it goes on along either, or ends in the crotch
 //! between them. The walks that come after it, back from the arms, stop at its ink. Here, of the arms of each such fork
-//! the one that best continues the stem is joined to it, so that the other is what leaves ([`super::merge`]).
+//! the one that best continues the stem is joined to it, so that the other is what leaves ([`super::tangent_end`]).
 
-use super::contacts::{LineIndex, Place, direction};
-use super::course::{THIN, bridge, course, departure, run};
-use super::ends::{End, ends};
-use super::merge::bodies;
 use crate::clean::LineImage;
+use crate::graph::lines::course::{THIN, bridge, course, departure, run};
+use crate::graph::lines::end::{End, ends};
+use crate::graph::repair::tangent_end::bodies;
+use crate::graph::resolve::contacts::{LineIndex, Place, direction};
 use crate::streamline::{STEP, Stop, Streamline, Tail};
 use rayon::prelude::*;
 
@@ -43,7 +43,7 @@ struct Fork {
 }
 
 /// Joins the straightest arm of every fork to its stem.
-pub(super) fn straighten(image: &LineImage, lines: &mut Vec<Streamline>) {
+pub(in crate::graph) fn straighten(image: &LineImage, lines: &mut Vec<Streamline>) {
     for _ in 0..ROUNDS {
         let mut forks = forks(image, lines);
         if forks.is_empty() {

@@ -1,9 +1,9 @@
 //! Ends that belong together become one node; its place is solved from its arms.
 
-use super::contacts::{Contact, Place, Touch, around, direction, point_at};
-use super::ends::{End, end_id};
-use super::point_index::PointIndex;
 use crate::clean::{LineImage, unblurred_width};
+use crate::graph::lines::end::{End, end_id};
+use crate::graph::point_index::PointIndex;
+use crate::graph::resolve::contacts::{Contact, Place, Touch, around, direction, point_at};
 use crate::profile::sharp_edge;
 use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
 use kurbo::{Point, Vec2};
@@ -36,7 +36,7 @@ const CORNER: f64 = 2.09;
 
 /// Two ends through which one stroke runs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(in crate::graph) struct Pair {
     pub ends: [usize; 2],
     /// How far the stroke turns, radians.
     pub turn: f64,
@@ -55,7 +55,7 @@ const CURVATURE_SPAN: f64 = 3.0;
 
 /// A node at which at least one line ends.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub(in crate::graph) struct Node {
     pub position: Point,
     /// Numbers of the ends.
     pub ends: Vec<usize>,
@@ -66,7 +66,7 @@ pub(super) struct Node {
 }
 
 /// Groups ends by their contacts and solves each group's place.
-pub(super) fn resolve(
+pub(in crate::graph) fn resolve(
     image: &LineImage,
     lines: &[Streamline],
     ends: &[Option<End>],
@@ -307,7 +307,7 @@ impl Solver<'_> {
 }
 
 /// The end of the pen's path: half a line width short of the end of the ink.
-pub(super) fn free_end(image: &LineImage, lines: &[Streamline], end: &End) -> Point {
+pub(in crate::graph) fn free_end(image: &LineImage, lines: &[Streamline], end: &End) -> Point {
     let n = lines[end.line].points.len();
     let at = |k: usize| lines[end.line].points[if end.side == 0 { k } else { n - 1 - k }];
     let d = at(0) - at((n - 1).min(3));
@@ -361,7 +361,7 @@ fn near_side_of_gap(ink: impl Fn(f64) -> f32) -> (f64, f64) {
 }
 
 /// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
-pub(super) fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
+pub(in crate::graph) fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
     let normal = tail.heading.turn_90();
     let s = (towards - tail.point).dot(tail.heading).clamp(0.0, 5.0 * line_width);
     let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
@@ -371,7 +371,7 @@ pub(super) fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, 
 
 /// How badly one arm of a node continues another, both heading into it, in radians: the turn between them, and
 /// the jump in curvature over a couple of line widths.
-pub(super) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f64 {
+pub(in crate::graph) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f64 {
     let (_, into) = arm_line(a, at, line_width);
     let (_, out) = arm_line(b, at, line_width);
     let jump = (CURVATURE_SPAN * line_width * (a.curvature + b.curvature)).abs().min(0.25);
@@ -380,7 +380,7 @@ pub(super) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f6
 
 /// The two corners of four arms, by the arms' places in the list, where corners share their vertex: without them, the
 /// smoothest stroke bends all the same, and leaves two arms beside each other to fold back.
-pub(super) fn two_corners(arms: [&Tail; 4], at: Point, line_width: f64) -> Option<[Pair; 2]> {
+pub(in crate::graph) fn two_corners(arms: [&Tail; 4], at: Point, line_width: f64) -> Option<[Pair; 2]> {
     let lines = arms.map(|arm| arm_line(arm, at, line_width));
     if lines.iter().any(|(point, heading)| heading.cross(at - *point).abs() > line_width) {
         return None;

@@ -4,8 +4,8 @@
 //! that the ink is taken. Once both are settled on the middle of their ink they coincide there, and only what is a
 //! line's own says where it was going.
 
-use super::contacts::{LineIndex, direction_at};
 use crate::clean::LineImage;
+use crate::graph::resolve::contacts::{LineIndex, direction_at};
 use crate::streamline::{STEP, Stop, Streamline};
 
 /// Lines nearer than this are one, in line widths, and at least in pixels.
@@ -19,7 +19,7 @@ const APART: f64 = 0.5;
 const SHORT: f64 = 0.75;
 
 /// Cuts from every open line what its ends share with other lines, and drops lines that have nothing of their own.
-pub(super) fn trim(image: &LineImage, lines: &mut Vec<Streamline>) {
+pub(in crate::graph) fn trim(image: &LineImage, lines: &mut Vec<Streamline>) {
     let index = LineIndex::new(lines);
     let mut kept: Vec<(usize, usize)> = lines.iter().map(|line| (0, line.points.len())).collect();
     // Seeds come by certainty: what was traced last gives way first.

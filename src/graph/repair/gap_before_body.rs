@@ -4,10 +4,10 @@
 //! other line. What the pixels say of the gap decides (`approach`).
 
 use super::approach::Approach;
-use super::contacts::{LineIndex, Place, around, direction, piece, piece_count, width_at};
-use super::ends::{End, ends};
-use super::nodes::arm_line;
 use crate::clean::{LineImage, unblurred_width};
+use crate::graph::lines::end::{End, ends};
+use crate::graph::resolve::contacts::{LineIndex, Place, around, direction, piece, piece_count, width_at};
+use crate::graph::resolve::node::arm_line;
 use crate::streamline::{STEP, Stop, Streamline};
 use kurbo::{Line, Point, Vec2};
 use rayon::prelude::*;
@@ -25,7 +25,7 @@ const THINNEST: f64 = 2.4;
 const LEAST_SINE: f64 = 0.5;
 
 /// Settles every end of a noisy page that faces a body across a gap.
-pub(super) fn settle(image: &LineImage, lines: &mut [Streamline]) {
+pub(in crate::graph) fn settle(image: &LineImage, lines: &mut [Streamline]) {
     let index = LineIndex::new(lines);
     let ends = ends(image, lines);
     let before_gap = |end: &End| Some((end.line, end.side, gap(image, lines, &index, end)?));
