@@ -3,12 +3,12 @@
 //! Colours are read in the middle of lines, where they are single, and grouped into few pens. Lines are cut where
 //! their colour changes for good, and strokes end there.
 
+use super::lines::{Line, Place};
+use super::{Dot, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::drawing::{Color, Fill};
-use crate::graph::resolve::contacts::Place;
-use crate::graph::{Dot, StrokeGraph, Trail};
 use crate::raster::Raster;
-use crate::streamline::{STEP, Streamline};
+use crate::streamline::STEP;
 use kurbo::{Point, Shape};
 use petgraph::stable_graph::EdgeIndex;
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ pub(super) struct Pens<'a> {
 
 impl<'a> Pens<'a> {
     /// The pens of a page; `None` when it is not in colour.
-    pub fn of(image: &'a LineImage, lines: &[Streamline], dots: &[Dot]) -> Option<Self> {
+    pub fn of(image: &'a LineImage, lines: &[Line], dots: &[Dot]) -> Option<Self> {
         let colors = image.colors.as_ref()?;
         let mut pens = Self { image, colors, pens: Vec::new() };
         let of_lines = lines.iter().flat_map(|line| {
@@ -110,7 +110,7 @@ impl<'a> Pens<'a> {
     }
 
     /// The places at which the colour of a line changes for good.
-    pub fn changes(&self, lines: &[Streamline]) -> Vec<Place> {
+    pub fn changes(&self, lines: &[Line]) -> Vec<Place> {
         let mut places = Vec::new();
         for (i, line) in lines.iter().enumerate() {
             let pens = self.of_points(&line.points, &line.widths);
@@ -128,12 +128,16 @@ impl<'a> Pens<'a> {
     }
 
     /// The colour of a dot.
-    pub fn of_dot(&self, dot: &Dot) -> Color {
+    fn of_dot(&self, dot: &Dot) -> Color {
         self.color_at(dot.centre).map_or(Color::BLACK, |color| self.pens[self.pen(color)])
     }
 
-    /// Gives strokes and regions their pens' colours; strokes are split where edges of two pens follow one another.
-    pub fn paint(&self, graph: &mut StrokeGraph) {
+    /// Gives dots, strokes and regions their pens' colours; strokes are split where edges of two pens follow one another.
+    /// Returns how many strokes are in colour.
+    pub fn paint(&self, graph: &mut StrokeGraph) -> usize {
+        for dot in &mut graph.dots {
+            dot.color = self.of_dot(dot);
+        }
         for fill in &mut graph.fills {
             fill.color = self.inside(fill).map_or(Color::BLACK, |color| self.pens[self.pen(color)]);
         }
@@ -147,6 +151,7 @@ impl<'a> Pens<'a> {
             .collect();
         let trails = std::mem::take(&mut graph.trails);
         graph.trails = trails.into_iter().flat_map(|trail| self.split(trail, &pens)).collect();
+        graph.trails.iter().filter(|trail| trail.color != Color::BLACK).count()
     }
 
     /// A trail as one for each run of edges of one pen; an edge of no colour of its own goes with the one before it.

@@ -4,11 +4,11 @@ use fieldtrace::clean::LineImage;
 use fieldtrace::drawing::Drawing;
 use fieldtrace::error::Result;
 use fieldtrace::field::PolyVectorField;
-use fieldtrace::graph::StrokeGraph;
+use fieldtrace::graph::{Line, Ran, StrokeGraph};
 use fieldtrace::hooks::Observer;
 use fieldtrace::inspect::DebugDir;
 use fieldtrace::streamline::Streamline;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Seconds and counts of the stages so far, printed where the user asked for it.
 pub(crate) struct Stages {
@@ -30,9 +30,16 @@ impl Stages {
         self.since = Instant::now();
     }
 
-    /// Takes what was done since the last stage out of the next one.
-    fn skip(&mut self) {
-        self.since = Instant::now();
+    /// Tells of a pass within a stage.
+    fn pass(&self, Ran { pass, changes, seconds }: &Ran) {
+        if self.verbose {
+            eprintln!("{:<12}{seconds:>8.3} s  {}: {changes}", "", pass.name);
+        }
+    }
+
+    /// Takes a time that was just spent out of the stage.
+    fn leave_out(&mut self, time: Duration) {
+        self.since += time;
     }
 }
 
@@ -49,8 +56,9 @@ pub(crate) struct Watch<'a> {
 impl Watch<'_> {
     /// Has the stage drawn, off the clock.
     fn draw(&mut self, stage: impl FnOnce(&mut DebugDir) -> Result<()>) -> Result<()> {
+        let start = Instant::now();
         let drawn = self.debug.as_mut().map_or(Ok(()), stage);
-        self.stages.skip();
+        self.stages.leave_out(start.elapsed());
         drawn
     }
 }
@@ -83,6 +91,16 @@ impl Observer for Watch<'_> {
             debug.on_streamline(image, streamline)?;
         }
         Ok(true)
+    }
+
+    fn on_lines(&mut self, image: &LineImage, ran: &Ran, lines: &[Line]) -> Result<()> {
+        self.stages.pass(ran);
+        self.draw(|debug| debug.on_lines(image, ran, lines))
+    }
+
+    fn on_finish(&mut self, image: &LineImage, ran: &Ran, graph: &StrokeGraph) -> Result<()> {
+        self.stages.pass(ran);
+        self.draw(|debug| debug.on_finish(image, ran, graph))
     }
 
     fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {

@@ -7,7 +7,7 @@
 //! The confidence is the product. A free end may have been meant to touch what it ends near; it is as sure as the
 //! paper between is wide.
 
-use crate::graph::resolve::node::{arm_line, continuation};
+use crate::graph::lines::{arm_line, continuation};
 use crate::graph::{JunctionKind, StrokeGraph};
 use crate::streamline::{STEP, Tail};
 use kurbo::Point;
@@ -40,8 +40,8 @@ struct Arm {
     tail: Tail,
 }
 
-/// Sets the confidence of every node.
-pub(in crate::graph) fn rate(graph: &mut StrokeGraph) {
+/// Sets the confidence of every node. Returns how many are doubtful.
+pub(in crate::graph) fn rate(graph: &mut StrokeGraph) -> usize {
     let (points, links) = (points_of_edges(graph), links(graph));
     let nodes: Vec<NodeIndex> = graph.graph.node_indices().collect();
     let ratings: Vec<(NodeIndex, f64)> = nodes
@@ -59,12 +59,13 @@ pub(in crate::graph) fn rate(graph: &mut StrokeGraph) {
     for (node, confidence) in ratings {
         graph.graph[node].confidence = confidence;
     }
+    graph.graph.node_weights().filter(|node| node.confidence < DOUBTFUL).count()
 }
 
-pub(in crate::graph) type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;
+pub(super) type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;
 
 /// Points of all edges, findable by place; empty where no line ends free.
-pub(in crate::graph) fn points_of_edges(graph: &StrokeGraph) -> PointsOfEdges {
+pub(super) fn points_of_edges(graph: &StrokeGraph) -> PointsOfEdges {
     if !graph.graph.node_weights().any(|n| n.kind == JunctionKind::FreeEnd) {
         return RTree::new();
     }
@@ -118,7 +119,7 @@ fn arms(graph: &StrokeGraph, node: NodeIndex) -> Vec<Arm> {
 }
 
 /// The course of an edge towards one of its ends.
-pub(in crate::graph) fn course(graph: &StrokeGraph, edge: EdgeIndex, at_source: bool) -> Option<Tail> {
+pub(super) fn course(graph: &StrokeGraph, edge: EdgeIndex, at_source: bool) -> Option<Tail> {
     let edge = &graph.graph[edge];
     let n = edge.points.len();
     let index = |k: usize| if at_source { k } else { n - 1 - k };

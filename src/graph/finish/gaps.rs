@@ -7,8 +7,8 @@
 use super::confidence::{PointsOfEdges, course, points_of_edges};
 use crate::clean::{LEAST_GRAIN, LineImage};
 use crate::drawing::Dashes;
+use crate::graph::lines::arm_line;
 use crate::graph::point_index::PointIndex;
-use crate::graph::resolve::node::arm_line;
 use crate::graph::{Edge, JunctionKind, StrokeGraph, Trail};
 use crate::options::{Dashing, Options};
 use crate::streamline::{STEP, Tail, angle_between};
@@ -41,7 +41,7 @@ const UNEVEN_PIXELS: f64 = 1.5;
 const LONGEST_DASH: f64 = 8.0;
 
 /// One end of an open stroke, in the open.
-pub(in crate::graph) struct FreeEnd {
+pub(super) struct FreeEnd {
     pub node: NodeIndex,
     pub point: Point,
     /// Where its course leads to beside the end.
@@ -64,12 +64,12 @@ struct Link {
 /// The links of a chain of dashes, and the pattern that it can be joined in.
 type Dashed = (Vec<Link>, Option<Dashes>);
 
-/// Bridges gaps and finds dashes, as the options ask.
-pub(in crate::graph) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Options) {
+/// Bridges gaps and finds dashes, as the options ask. Returns how many gaps were bridged.
+pub(in crate::graph) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Options) -> usize {
     let gap = options.gap.unwrap_or(if image.noise > LEAST_GRAIN { SCAN_GAP } else { 0.0 }) * image.line_width;
     let join = options.dashes == Dashing::Join;
     if gap <= 0.0 && !join {
-        return;
+        return 0;
     }
     let finder = Finder::new(image, graph);
     let links = finder.links(gap.max(DASH_GAP * image.line_width));
@@ -82,6 +82,7 @@ pub(in crate::graph) fn bridge(image: &LineImage, graph: &mut StrokeGraph, optio
     }
     let ends = finder.ends;
     join_trails(graph, &ends, &seams);
+    seams.len()
 }
 
 struct Finder<'a> {
@@ -241,17 +242,17 @@ fn is_even(values: &[f64]) -> bool {
 }
 
 /// The ends of all strokes, two for each: where it starts and where it ends; `None` where that is not in the open.
-pub(in crate::graph) fn free_ends(graph: &StrokeGraph) -> Vec<Option<FreeEnd>> {
+pub(super) fn free_ends(graph: &StrokeGraph) -> Vec<Option<FreeEnd>> {
     graph.trails.iter().flat_map(|trail| [0, 1].map(|side| free_end(graph, trail, side))).collect()
 }
 
 /// Some of the ends, findable by place.
-pub(in crate::graph) fn index_of(ends: &[Option<FreeEnd>], some: impl Iterator<Item = usize>) -> PointIndex {
+pub(super) fn index_of(ends: &[Option<FreeEnd>], some: impl Iterator<Item = usize>) -> PointIndex {
     PointIndex::new(some.filter_map(|i| Some((i, ends[i].as_ref()?.point))))
 }
 
 /// Keeps of pairs of ends, of which there are `count`, those whose ends are in none before them.
-pub(in crate::graph) fn retain_first<T>(pairs: &mut Vec<T>, count: usize, ends: impl Fn(&T) -> [usize; 2]) {
+pub(super) fn retain_first<T>(pairs: &mut Vec<T>, count: usize, ends: impl Fn(&T) -> [usize; 2]) {
     let mut taken = vec![false; count];
     pairs.retain(|pair| {
         let free = ends(pair).iter().all(|&end| !taken[end]);
@@ -263,7 +264,7 @@ pub(in crate::graph) fn retain_first<T>(pairs: &mut Vec<T>, count: usize, ends: 
 }
 
 /// How far two ends lie beside each other's course, if they agree: one line of one pen with a gap.
-pub(in crate::graph) fn facing(graph: &StrokeGraph, ends: &[Option<FreeEnd>], [i, j]: [usize; 2]) -> Option<f64> {
+pub(super) fn facing(graph: &StrokeGraph, ends: &[Option<FreeEnd>], [i, j]: [usize; 2]) -> Option<f64> {
     let (a, b) = (ends[i].as_ref()?, ends[j].as_ref()?);
     let distance = (b.point - a.point).hypot();
     // The two ends of one stroke close it only when it is far longer than the gap.
@@ -335,7 +336,7 @@ fn partners(count: usize, links: &[Link]) -> Vec<Option<(usize, usize)>> {
 }
 
 /// Strokes in chains over their gaps; `true` walks a stroke backwards.
-pub(in crate::graph) fn chains(strokes: usize, partner: &[Option<(usize, usize)>]) -> Vec<Vec<(usize, bool)>> {
+pub(super) fn chains(strokes: usize, partner: &[Option<(usize, usize)>]) -> Vec<Vec<(usize, bool)>> {
     let mut used = vec![false; strokes];
     let open = (0..partner.len()).filter(|&e| partner[e].is_none());
     let mut chains = Vec::new();

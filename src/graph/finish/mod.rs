@@ -1,6 +1,9 @@
 //! What is done to the graph once it is assembled.
 
-pub(in crate::graph) mod confidence;
-pub(in crate::graph) mod gaps;
-pub(crate) mod layers;
-pub(in crate::graph) mod taper;
+pub(super) mod confidence;
+pub(super) mod gaps;
+mod layers;
+pub(super) mod taper;
+
+pub use confidence::DOUBTFUL;
+pub(crate) use layers::join as join_layers;

@@ -20,8 +20,10 @@ const ROUNDS: usize = 3;
 /// As many measured points at an end tell the width that its place was found by.
 const NEAR: usize = 40;
 
-/// Measures long stretches again, and sets free ends half of their new width short of the ink's.
-pub(in crate::graph) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
+/// Measures long stretches again, and sets free ends half of their new width short of the ink's. Returns how many
+/// stretches there were.
+pub(in crate::graph) fn measure(image: &LineImage, graph: &mut StrokeGraph) -> usize {
+    let mut measured = 0;
     let edges: Vec<EdgeIndex> = graph.graph.edge_indices().collect();
     for e in edges {
         let Some((a, b)) = graph.graph.edge_endpoints(e) else { continue };
@@ -29,6 +31,7 @@ pub(in crate::graph) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
         let edge = &mut graph.graph[e];
         for (from, to) in lost(edge, LONGEST_JUNCTION * image.line_width) {
             (0..ROUNDS).for_each(|_| measure_stretch(image, edge, from, to));
+            measured += 1;
         }
         for (node, reversed) in [(a, false), (b, true)] {
             if a != b && graph.graph[node].kind == JunctionKind::FreeEnd {
@@ -36,6 +39,7 @@ pub(in crate::graph) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
             }
         }
     }
+    measured
 }
 
 /// Runs of points without a width, longer than `least` pixels; their first and last indices, nodes left out.

@@ -27,7 +27,7 @@ const FEWEST: usize = 20;
 
 /// A pen that comes up to a line.
 #[derive(Clone, Debug)]
-pub(in crate::graph) struct Approach {
+pub(super) struct Approach {
     /// Where the pen's course crosses the middle of the line.
     pub foot: Point,
     /// Unit direction of the course there, towards the line.

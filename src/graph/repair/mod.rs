@@ -1,11 +1,14 @@
-//! Repairs of lines, a file for each situation.
+//! Repairs of lines: a file for each situation that a walk could not see through.
+//!
+//! Each takes the lines, edits them, and tells how much it changed. In what order they run, and why, is in `passes`.
 
 mod approach;
-pub(in crate::graph) mod cusp;
-pub(in crate::graph) mod fork;
-pub(in crate::graph) mod gap_before_body;
-pub(in crate::graph) mod overlap;
-pub(in crate::graph) mod swapped_arms;
-pub(in crate::graph) mod tangency;
-pub(in crate::graph) mod tangent_end;
-pub(in crate::graph) mod wrong_arm;
+pub(super) mod cusp;
+pub(super) mod fork;
+pub(super) mod gap_before_body;
+mod leave;
+pub(super) mod overlap;
+pub(super) mod swapped_arms;
+pub(super) mod tangency;
+pub(super) mod tangent_end;
+pub(super) mod wrong_arm;

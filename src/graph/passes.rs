@@ -1,0 +1,225 @@
+//! The passes from lines to strokes, in the order in which they run, and why in that order.
+//!
+//! A pass is a row of [`REPAIRS`], which work on lines, or of [`FINISHES`], which work on the graph. Between the two, ends
+//! are resolved and the graph is assembled; that is no pass, for nothing comes out without it.
+
+use super::lines::Lines;
+use super::pens::Pens;
+use super::repair::{cusp, fork, gap_before_body, overlap, swapped_arms, tangency, tangent_end, wrong_arm};
+use super::resolve::{Node, resolve};
+use super::{Dot, StrokeGraph, dots, finish};
+use crate::clean::LineImage;
+use crate::error::{Error, Result};
+use crate::options::{Options, StrokeWidth};
+use std::fmt;
+
+/// A step from lines to strokes.
+pub struct Pass {
+    /// What is looked for.
+    pub name: &'static str,
+    /// When it runs.
+    pub when: When,
+    /// Why it runs at its place in the order.
+    pub why: &'static str,
+    /// The test that fails without it: the program's name and the test's.
+    pub guarded_by: &'static str,
+    /// Does it, and returns how much it changed.
+    pub(super) run: fn(&mut Draft) -> usize,
+}
+
+impl fmt::Debug for Pass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// When a pass runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// On every page.
+    Always,
+    /// On a page with grain.
+    Noisy,
+    /// On a page in colour.
+    Colored,
+    /// Where strokes are to be outlines.
+    Outlines,
+}
+
+impl When {
+    pub(super) fn holds(self, draft: &Draft) -> bool {
+        match self {
+            Self::Always => true,
+            Self::Noisy => draft.image.noise > 0.0,
+            Self::Colored => draft.image.colors.is_some(),
+            Self::Outlines => draft.options.width == StrokeWidth::Outline,
+        }
+    }
+}
+
+/// A drawing between its streamlines and its graph.
+pub(super) struct Draft<'a> {
+    pub image: &'a LineImage,
+    pub options: &'a Options,
+    /// The lines, until they are assembled.
+    pub lines: Lines,
+    /// The nodes of the lines, where a pass has resolved them and nothing was changed since.
+    pub nodes: Option<Vec<Node>>,
+    pub dots: Vec<Dot>,
+    /// The pens, once they are told apart.
+    pub pens: Option<Pens<'a>>,
+    /// The graph, once it is assembled.
+    pub graph: StrokeGraph,
+}
+
+/// What is done to lines before their ends are resolved.
+pub static REPAIRS: [Pass; 10] = [
+    Pass {
+        name: "dot",
+        when: When::Always,
+        why: "first: a dot has no course, and every other pass asks lines for theirs",
+        guarded_by: "junctions::dots_stay_dots",
+        run: |draft| {
+            draft.dots = dots::take_out(draft.image, &mut draft.lines);
+            draft.dots.len()
+        },
+    },
+    Pass {
+        name: "overlap",
+        when: When::Always,
+        why: "before all that look at ends: where two walks lie on each other, neither tells where its line was going",
+        guarded_by: "",
+        run: |draft| overlap::cut_off(draft.image, &mut draft.lines),
+    },
+    Pass {
+        name: "gap before a body",
+        when: When::Noisy,
+        why: "before all that join: what was drawn apart must not be taken for the arm of a junction",
+        guarded_by: "",
+        run: |draft| gap_before_body::take_back(draft.image, &mut draft.lines),
+    },
+    Pass {
+        name: "tangency",
+        when: When::Always,
+        why: "while lines are still as they were walked: it compares their arms on both sides of shared ink",
+        guarded_by: "",
+        run: |draft| tangency::part(draft.image, &mut draft.lines),
+    },
+    Pass {
+        name: "cusp",
+        when: When::Always,
+        why: "before fork: two lines that run into one and end there look like a fork, of which one line would be the stem",
+        guarded_by: "",
+        run: |draft| cusp::sharpen(draft.image, &mut draft.lines),
+    },
+    Pass {
+        name: "fork",
+        when: When::Always,
+        why: "before tangent end, which leads the arm that leaves, and has to know which one that is",
+        guarded_by: "",
+        run: |draft| fork::straighten(draft.image, &mut draft.lines),
+    },
+    Pass {
+        name: "colour change",
+        when: When::Colored,
+        why: "after all that join lines into longer ones, and before ends are led: those of its cuts are led as well",
+        guarded_by: "",
+        run: |draft| {
+            draft.pens = Pens::of(draft.image, &draft.lines, &draft.dots);
+            let changes = draft.pens.as_ref().map_or(Vec::new(), |pens| pens.changes(&draft.lines));
+            draft.lines.cut(&changes)
+        },
+    },
+    Pass {
+        name: "tangent end",
+        when: When::Always,
+        why: "after fork has told which arms end; before swapped arms, which looks at lines over all of the ink they share",
+        guarded_by: "",
+        run: |draft| tangent_end::lead(draft.image, &mut draft.lines),
+    },
+    Pass {
+        name: "swapped arms",
+        when: When::Always,
+        why: "once every line reaches to where it ends: only then is it seen which lines share ink, and how long",
+        guarded_by: "",
+        run: |draft| {
+            let cuts = swapped_arms::cuts(draft.image, &draft.lines);
+            draft.lines.cut(&cuts)
+        },
+    },
+    Pass {
+        name: "wrong arm",
+        when: When::Always,
+        why: "last: it compares arms at nodes, and those are known once all ends are where they belong",
+        guarded_by: "",
+        run: |draft| {
+            let nodes = resolve(draft.image, &draft.lines);
+            let cuts = wrong_arm::cuts(draft.image, &draft.lines, &nodes);
+            draft.nodes = cuts.is_empty().then_some(nodes);
+            draft.lines.cut(&cuts)
+        },
+    },
+];
+
+/// What is done to the graph once it is assembled.
+pub static FINISHES: [Pass; 4] = [
+    Pass {
+        name: "colour",
+        when: When::Colored,
+        why: "before gaps: ends of two pens are not one line",
+        guarded_by: "",
+        run: |draft| draft.pens.as_ref().map_or(0, |pens| pens.paint(&mut draft.graph)),
+    },
+    Pass {
+        name: "taper",
+        when: When::Outlines,
+        why: "before gaps: it moves the ends of tapering strokes",
+        guarded_by: "",
+        run: |draft| finish::taper::measure(draft.image, &mut draft.graph),
+    },
+    Pass {
+        name: "gap",
+        when: When::Always,
+        why: "after all that move ends or tell them apart",
+        guarded_by: "",
+        run: |draft| finish::gaps::bridge(draft.image, &mut draft.graph, draft.options),
+    },
+    Pass {
+        name: "confidence",
+        when: When::Always,
+        why: "last: it tells how sure what has become of the junctions is",
+        guarded_by: "",
+        run: |draft| finish::confidence::rate(&mut draft.graph),
+    },
+];
+
+/// Which passes run: all, but for some.
+#[derive(Clone, Debug, Default)]
+pub struct Passes {
+    without: Vec<String>,
+}
+
+impl Passes {
+    /// The same without one more, by its name.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when no pass has the name.
+    pub fn without(mut self, name: &str) -> Result<Self> {
+        let names: Vec<&str> = all().map(|pass| pass.name).collect();
+        if !names.contains(&name) {
+            let reason = format!("{name:?} is none of {}", names.join(", "));
+            return Err(Error::Option { option: "without", reason });
+        }
+        self.without.push(name.into());
+        Ok(self)
+    }
+
+    pub(super) fn has(&self, pass: &Pass) -> bool {
+        self.without.iter().all(|name| name != pass.name)
+    }
+}
+
+/// All passes in their order.
+pub fn all() -> impl Iterator<Item = &'static Pass> {
+    REPAIRS.iter().chain(&FINISHES)
+}
