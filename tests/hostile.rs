@@ -9,7 +9,7 @@ mod targets;
 use common::compare::strokes_apart;
 use common::draw::{line, polyline, scan, scan_of, sheet, trace};
 use fieldtrace::Error;
-use fieldtrace::clean::LineImage;
+use fieldtrace::clean::{LineImage, Noise, NoiseMap};
 use fieldtrace::drawing::{Drawing, Stroke};
 use fieldtrace::field::{PolyVectorField, encode};
 use fieldtrace::hooks::Observer;
@@ -125,7 +125,7 @@ fn a_line_image_that_an_observer_broke_is_refused() {
         ("line width", |image| image.line_width = f64::NAN),
         ("line width", |image| image.line_width = 0.0),
         ("scale", |image| image.scale = -1.0),
-        ("noise", |image| image.noise = f64::INFINITY),
+        ("noise", |image| image.noise = NoiseMap::even(Noise { across: f64::INFINITY, ..Noise::default() })),
         ("blur", |image| image.blur = -0.5),
     ];
     for (what, change) in breaks {

@@ -20,9 +20,8 @@ const FOOT: f64 = 0.15;
 const LEAST: f64 = 0.3;
 const MOST: f64 = 2.5;
 const STEP: f64 = 0.05;
-/// The deviation of most scans, and how much a square pixel off it weighs against the squares of the shape's errors:
-/// thin lines have much the same shape under any blur.
-const USUAL: f64 = 1.12;
+/// How much a square pixel off the expected deviation weighs against the squares of the shape's errors: thin lines have much
+/// the same shape under any blur.
 const LIKELY: f64 = 0.03;
 /// Of the width that a line measures, the least that it is taken to have had: below, hardly any blur is enough of one.
 const NARROWEST: f64 = 0.5;
@@ -30,8 +29,9 @@ const NARROWEST: f64 = 0.5;
 /// The standard deviation of the blur, in pixels; 0 where there are too few lines to tell.
 ///
 /// The mean profile of lines of typical width is compared with [`profile_at`]: for each deviation, the width is
-/// the one that gives the measured half-peak width, and the best shape wins, unusual blurs having to be the better.
-pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line_width: f64) -> f64 {
+/// the one that gives the measured half-peak width, and the best shape wins; the further from what the steepness of the edges
+/// lets expect, the better it has to be.
+pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line_width: f64, expected: f64) -> f64 {
     let Some(mut mean) = mean_profile(ink, mask, depth, line_width) else { return 0.0 };
     // Grain darkens the paper a little on average.
     let paper = mean.iter().copied().fold(f64::MAX, f64::min);
@@ -46,7 +46,7 @@ pub(super) fn estimate(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>, line
         let top = profile_at(0.0, width, blur);
         let off = |(i, m): (usize, &f64)| (m / peak - profile_at(i as f64 * spacing, width, blur) / top).powi(2);
         let shape: f64 = mean.iter().enumerate().filter(|(_, m)| **m > FOOT * peak).map(off).sum();
-        shape + LIKELY * (blur - USUAL).powi(2)
+        shape + LIKELY * (blur - expected).powi(2)
     };
     let count = ((MOST - LEAST) / STEP) as usize;
     let tried = (0..=count).map(|i| LEAST + STEP * i as f64).filter(|&s| s < 0.55 * measured);
@@ -139,7 +139,7 @@ mod tests {
             let mask = ink.map(|i| i > 0.5 * profile_at(0.0, width, blur) as f32);
             let depth = super::super::distance::distance(&mask);
             let measured = Ridge::of(&ink, &mask, &depth).line_width();
-            let found = estimate(&ink, &mask, &depth, measured);
+            let found = estimate(&ink, &mask, &depth, measured, 1.12);
             let restored = unblurred_width(measured, found);
             assert!((restored - width).abs() < 0.25, "{width} {blur}: {found} {restored}");
         }

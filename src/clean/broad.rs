@@ -1,9 +1,10 @@
 //! Lines too broad to be traced beside others become an image of their own.
 
 use super::distance::distance;
+use super::noise::NoiseMap;
 use super::resample::Resampling;
 use super::width::Ridge;
-use super::{DARKEST, LineImage, blur, threshold};
+use super::{DARKEST, LineImage, blur_of, threshold};
 use crate::raster::{Mask, Raster};
 use rayon::prelude::*;
 
@@ -11,8 +12,8 @@ use rayon::prelude::*;
 pub(crate) const RIM: f64 = 2.0;
 
 /// Takes the ink of broad lines, a region that is not in the mask, and of its rim, in which fine lines end.
-pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise: f64) -> Raster<f32> {
-    let level = threshold::level(noise);
+pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise: &NoiseMap) -> Raster<f32> {
+    let level = threshold::level(noise.mean());
     let to_region = distance(&region.mapped(false, |inside| !inside));
     let mut broad = Raster::filled(region.width(), region.height(), 0.0);
     let fine = ink.data_mut().iter_mut().zip(mask.data_mut());
@@ -29,18 +30,18 @@ pub(super) fn take(ink: &mut Raster<f32>, mask: &mut Mask, region: &Mask, noise:
 
 /// The image of broad lines that were taken from another.
 pub(super) fn image(mut ink: Raster<f32>, mut mask: Mask, fine: &LineImage) -> LineImage {
-    let noise = fine.noise;
     let mut depth = distance(&mask);
     let ridge = Ridge::of(&ink, &mask, &depth);
     let mut line_width = ridge.median_width();
-    let resampling = Resampling::of(&ridge, mask.size(), noise, line_width);
+    let resampling = Resampling::of(&ridge, mask.size(), fine.noise.mean(), line_width);
+    let noise = fine.noise.clone().scaled(resampling.scale);
     if resampling.scale != 1.0 {
         ink = resampling.apply(ink, &depth);
-        mask = ink.mapped(false, |i| i > threshold::level(noise));
+        mask = threshold::mask(&ink, &noise);
         depth = distance(&mask);
         line_width = Ridge::of(&ink, &mask, &depth).median_width();
     }
-    let blur = if noise > 0.0 { blur::estimate(&ink, &mask, &depth, line_width) } else { resampling.blur() };
+    let blur = blur_of(&ink, &mask, &depth, line_width, &noise, resampling);
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let (scale, solids, colors) = (fine.scale * resampling.scale, Vec::new(), fine.colors.clone());
     LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, broad: None, colors }

@@ -5,6 +5,8 @@ mod blur;
 mod broad;
 mod colors;
 mod distance;
+mod line_image;
+mod noise;
 mod paper;
 mod resample;
 mod runs;
@@ -16,144 +18,29 @@ mod width;
 
 pub(crate) use blur::{profile_at, unblurred_width};
 pub(crate) use broad::RIM;
+pub use line_image::LineImage;
+pub use noise::{Noise, NoiseMap};
 pub(crate) use runs::runs;
-pub(crate) use threshold::LEAST_GRAIN;
 pub(crate) use width::is_ridge;
 
 use crate::cancel::Cancel;
-use crate::drawing::Fill;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::load::Scan;
 use crate::options::{Invert, Options, Threshold};
 use crate::raster::{Mask, Raster};
 use distance::distance;
 use imageproc::filter::gaussian_blur_f32;
-use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 use resample::Resampling;
 use std::borrow::Cow;
-use std::f64::consts::TAU;
 use width::Ridge;
-
-/// The ink of a drawing, evenly lit and at a size that the later stages know.
-#[derive(Clone, Debug)]
-pub struct LineImage {
-    /// How much of each pixel is inked: 0 on paper, 1 in the middle of a typical line; anti-aliased edges are
-    /// kept. On a scan, the darkest ink has up to 2.
-    pub ink: Raster<f32>,
-    /// The pixels that count as ink of lines; solid regions are not among them.
-    pub mask: Mask,
-    /// Distance of each mask pixel's centre to the nearest paper pixel's centre; 0 off the mask.
-    pub depth: Raster<f32>,
-    /// Typical line width in pixels of this raster.
-    pub line_width: f64,
-    /// Pixels of this raster per pixel of the scan.
-    pub scale: f64,
-    /// Standard deviation of the paper's grain as a share of the ink; 0 for a clean render.
-    pub noise: f64,
-    /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render, unless it was
-    /// enlarged.
-    pub blur: f64,
-    /// Regions too wide to be lines, in pixels of this raster.
-    pub solids: Vec<Fill>,
-    /// Lines too broad to be traced beside these, as an image of their own.
-    pub broad: Option<Box<LineImage>>,
-    /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
-    /// ink is grey.
-    pub colors: Option<Raster<[u8; 3]>>,
-}
 
 /// A page whose lightest and darkest pixels are nearer than this is blank.
 const LEAST_CONTRAST: f32 = 0.02;
+/// Deviation of the blur that joins the grain of a pencil line, in pixels of the scan: half of a pixel's own footprint.
+const JOINING: f64 = 0.7;
 /// Ink beyond this many times that of a typical line is cut off.
 const DARKEST: f32 = 2.0;
-/// On a clean render, lines that touch show no gap longer than this, in pixels of the scan.
-const CLEAN_GAP: f64 = 0.15;
-/// On a noisy scan, the grain of a line that touches another looks like a gap of at most this length, in pixels.
-const NOISY_GAP: f64 = 0.65;
-/// Bounds of the sizes of a line image, in pixels: far beyond those of any drawing.
-const LEAST_SIZE: f64 = 1e-3;
-const LARGEST_SIZE: f64 = 1e4;
-/// The middle of a line that is averaged over to see past its grain, as a share of its width to either side.
-const CORE_BAND: f64 = 0.35;
-
-impl LineImage {
-    /// Whether the ink of a line, `core` in its middle, runs from one point to another without a break.
-    ///
-    /// The ink that is missing along the way adds up to the length of the gap, however it lies on the pixels and
-    /// however much it is blurred.
-    pub(crate) fn is_inked(&self, a: Point, b: Point, core: f32) -> bool {
-        let length = (b - a).hypot();
-        let count = (length / 0.25).ceil().max(1.0) as usize;
-        let along = (0..=count).map(|k| a.lerp(b, k as f64 / count as f64));
-        if self.noise > 0.0 {
-            let heading = if length > 1e-9 { (b - a) / length } else { return true };
-            let profile = GapProfile::of(self);
-            return !along.map(|p| profile.gap(self, p, heading, core)).any(|gap| gap > NOISY_GAP);
-        }
-        let missing: f64 = along.map(|p| (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0)).sum();
-        missing * length / count as f64 <= CLEAN_GAP * self.scale.max(1.0)
-    }
-
-    /// Ink in the middle of a line: on a noisy scan the mean across it, since single pixels are mostly grain.
-    pub(crate) fn core(&self, p: Point, heading: Vec2) -> f32 {
-        if self.noise == 0.0 {
-            return self.ink.sample(p);
-        }
-        let step = heading.turn_90() * (0.5 * CORE_BAND * self.line_width);
-        (-2..=2).map(|k| self.ink.sample(p + step * f64::from(k))).sum::<f32>() / 5.0
-    }
-}
-
-/// The ink that a gap of unit length lacks along a line, once the scan has blurred it.
-struct GapProfile {
-    /// Distance from the gap's middle in pixels, and the share that is missing there.
-    samples: Vec<(f64, f64)>,
-    /// Sum of the squared shares.
-    whole: f64,
-}
-
-impl GapProfile {
-    fn of(image: &LineImage) -> Self {
-        let deviation = image.blur.max(0.7);
-        let spacing = 0.25;
-        let reach = (2.0 * deviation / spacing).ceil() as i32;
-        let missing = |offset: f64| (-0.5 * (offset / deviation).powi(2)).exp() / (deviation * TAU.sqrt());
-        let samples = (-reach..=reach).map(|k| spacing * f64::from(k)).map(|offset| (offset, missing(offset)));
-        let samples: Vec<(f64, f64)> = samples.collect();
-        let whole = samples.iter().map(|(_, missing)| missing * missing).sum();
-        Self { samples, whole }
-    }
-
-    /// Length of the gap at a point of a noisy line, in pixels: the least squares size of a gap that the scan has
-    /// blurred.
-    fn gap(&self, image: &LineImage, p: Point, heading: Vec2, core: f32) -> f64 {
-        let missing = |offset: f64| 1.0 - f64::from(image.core(p + heading * offset, heading) / core);
-        let seen: f64 = self.samples.iter().map(|&(offset, share)| share * missing(offset)).sum();
-        seen / self.whole
-    }
-}
-
-impl LineImage {
-    /// Checks what the later stages rely on, after somebody else may have changed it.
-    ///
-    /// # Errors
-    /// [`Error::Broken`].
-    pub(crate) fn validate(&self) -> Result<()> {
-        let broken = |reason: String| Err(Error::Broken { stage: "clean", reason });
-        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size())] {
-            if size != self.ink.size() {
-                return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
-            }
-        }
-        let positive = [("line width", self.line_width), ("scale", self.scale)].map(|(what, v)| (what, v, LEAST_SIZE));
-        let others = [("noise", self.noise, 0.0), ("blur", self.blur, 0.0)];
-        match positive.into_iter().chain(others).find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value)) {
-            Some((what, value, _)) => broken(format!("the {what} is {value}")),
-            None => self.broad.as_ref().map_or(Ok(()), |broad| broad.validate()),
-        }
-    }
-}
 
 /// Cleans a scan.
 ///
@@ -175,45 +62,54 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
     cancel.check()?;
     let page = scan.rgb.as_ref().and_then(|rgb| colors::separate(rgb, inverted));
     cancel.check()?;
-    let noise;
-    let (mut ink, mut mask) = match &page {
-        Some(page) => {
-            noise = threshold::grain(&page.strength);
-            inks_of_groups(page, noise, options.threshold)
-        }
-        None => {
-            let ink = ink_of_gray(&scan.gray, inverted);
-            cancel.check()?;
-            noise = threshold::grain(&ink);
-            cancel.check()?;
-            threshold::binarise(joined(ink, noise), noise, options.threshold, false)
-        }
+    let paper = match &page {
+        Some(page) => threshold::Paper::of(&page.strength),
+        None => threshold::Paper::of(&ink_of_gray(&scan.gray, inverted)),
     };
+    cancel.check()?;
+    let inked = |noise: &NoiseMap| match &page {
+        Some(page) => inks_of_groups(page, paper, noise, options.threshold),
+        None => threshold::binarise(
+            joined(ink_of_gray(&scan.gray, inverted), noise),
+            paper,
+            noise,
+            options.threshold,
+            false,
+        ),
+    };
+    // Lines are looked at as if all ink were sure before that is known.
+    let (mut ink, mut mask) = inked(&NoiseMap::even(Noise::default()));
     let mut depth = distance(&mask);
     cancel.check()?;
-    let ridge = Ridge::of(&ink, &mask, &depth);
+    let mut ridge = Ridge::of(&ink, &mask, &depth);
+    let noise = NoiseMap::of(&ink, &ridge, paper);
+    cancel.check()?;
+    if !noise.is_sure() {
+        (ink, mask) = inked(&noise);
+        depth = distance(&mask);
+        cancel.check()?;
+        ridge = Ridge::of(&ink, &mask, &depth);
+    }
     let mut line_width = ridge.line_width();
-    let resampling = Resampling::of(&ridge, mask.size(), noise, line_width);
+    let resampling = Resampling::of(&ridge, mask.size(), noise.mean(), line_width);
     let scale = resampling.scale;
+    let noise = noise.scaled(scale);
     if scale != 1.0 {
         ink = resampling.apply(ink, &depth);
         cancel.check()?;
-        mask = ink.mapped(false, |i| i > threshold::level(noise));
+        mask = threshold::mask(&ink, &noise);
         (depth, line_width) = measured(&ink, &mask);
     }
     cancel.check()?;
-    if valleys::deepen(&mut ink, &mut mask, line_width, threshold::level(noise)) {
+    if valleys::deepen(&mut ink, &mut mask, line_width, &noise) {
         (depth, line_width) = measured(&ink, &mask);
     }
     cancel.check()?;
-    specks::remove(&mut mask, &mut ink, line_width, noise, options.despeckle);
+    specks::remove(&mut mask, &mut ink, line_width, &noise, options.despeckle);
     cancel.check()?;
-    let blur = match noise > 0.0 {
-        true => blur::estimate(&ink, &mask, &depth, line_width),
-        false => resampling.blur(),
-    };
+    let blur = blur_of(&ink, &mask, &depth, line_width, &noise, resampling);
     let broad = solids::take_broad(&mut mask, &depth, unblurred_width(line_width, blur));
-    let broad = broad.map(|region| (broad::take(&mut ink, &mut mask, &region, noise), region));
+    let broad = broad.map(|region| (broad::take(&mut ink, &mut mask, &region, &noise), region));
     if broad.is_some() {
         depth = distance(&mask);
     }
@@ -244,13 +140,47 @@ fn ink_of_gray(gray: &Raster<f32>, inverted: bool) -> Raster<f32> {
     paper::divide(&light, &paper::paper_level(&light))
 }
 
-/// Just enough smoothing to join the grain of a pencil line: the half-width of a pixel's own footprint.
-fn joined(ink: Raster<f32>, noise: f64) -> Raster<f32> {
-    if noise > 0.0 { smooth(ink, 0.7) } else { ink }
+/// Standard deviation of the lines' blur: sure ink has none but that of resampling.
+fn blur_of(
+    ink: &Raster<f32>,
+    mask: &Mask,
+    depth: &Raster<f32>,
+    line_width: f64,
+    noise: &NoiseMap,
+    resampling: Resampling,
+) -> f64 {
+    let noise = noise.mean();
+    if noise.grain() < 0.5 {
+        return resampling.blur();
+    }
+    blur::estimate(ink, mask, depth, line_width, noise.blur.hypot(noise.between(0.0, JOINING * resampling.scale)))
+}
+
+/// Smooths where ink is unsure, just enough to join the grain of a pencil line.
+fn joined(ink: Raster<f32>, noise: &NoiseMap) -> Raster<f32> {
+    let [least, most] = noise.grains();
+    if most == 0.0 {
+        return ink;
+    }
+    let smoothed = smooth(ink.clone(), JOINING as f32);
+    if least == 1.0 {
+        return smoothed;
+    }
+    Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
+        for (x, to) in row.iter_mut().enumerate() {
+            let share = noise.at_pixel(x, y).grain() as f32;
+            *to = ink[(x, y)] + share * (smoothed[(x, y)] - ink[(x, y)]);
+        }
+    })
 }
 
 /// Each group of inks scaled and told from paper by itself, and all laid over one another.
-fn inks_of_groups(page: &colors::ColorPage, noise: f64, threshold: Threshold) -> (Raster<f32>, Mask) {
+fn inks_of_groups(
+    page: &colors::ColorPage,
+    paper: threshold::Paper,
+    noise: &NoiseMap,
+    threshold: Threshold,
+) -> (Raster<f32>, Mask) {
     let (width, height) = page.strength.size();
     let (mut ink, mut mask) = (Raster::filled(width, height, 0.0), Raster::filled(width, height, false));
     for group in 0..page.groups {
@@ -266,7 +196,7 @@ fn inks_of_groups(page: &colors::ColorPage, noise: f64, threshold: Threshold) ->
             ink = own;
             continue;
         }
-        let (own, own_mask) = threshold::binarise(joined(own, noise), noise, threshold, true);
+        let (own, own_mask) = threshold::binarise(joined(own, noise), paper, noise, threshold, true);
         // What smoothing took from one ink where it meets another, it put into the other.
         ink.data_mut().iter_mut().zip(own.data()).for_each(|(i, &o)| *i += o);
         mask.data_mut().iter_mut().zip(own_mask.data()).for_each(|(m, &o)| *m |= o);

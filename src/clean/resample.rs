@@ -1,6 +1,7 @@
 //! Very thick and very thin drawings are brought to a width that the later stages know.
 
 use super::distance::distance;
+use super::noise::Noise;
 use super::smooth;
 use super::width::Ridge;
 use crate::raster::{Mask, Raster};
@@ -49,15 +50,15 @@ enum Thin {
 
 impl Resampling {
     /// What suits a drawing, from its grain, the sorted widths of its lines and the ink on their ridge; none for most.
-    pub fn of(ridge: &Ridge, (width, height): (usize, usize), noise: f64, line_width: f64) -> Self {
+    pub fn of(ridge: &Ridge, (width, height): (usize, usize), noise: Noise, line_width: f64) -> Self {
         let by = |scale: f64| Self { scale, smoothed: None };
         let widths = &ridge.widths;
-        let thin = if noise > 0.0 { THIN_ON_SCAN } else { THIN };
+        let thin = noise.between(THIN, THIN_ON_SCAN);
         if line_width < thin && 4 * width * height <= ENLARGE_LIMIT {
             let finest = widths.get(widths.len() / FINEST).copied().unwrap_or(line_width);
             let faint = ridge.ink.get(ridge.ink.len() / FINEST).is_some_and(|&ink| ink < FULL);
             let kind = if finest < HAIRLINE || faint { Thin::Hairline } else { Thin::Line };
-            return Self { scale: 2.0, smoothed: (noise == 0.0).then_some(kind) };
+            return Self { scale: 2.0, smoothed: (noise.grain() < 0.5).then_some(kind) };
         }
         let Some(&thin) = widths.get(widths.len() / 10) else { return by(1.0) };
         // A fine line among thick ones keeps at least four pixels.

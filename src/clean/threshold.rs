@@ -1,5 +1,6 @@
 //! Ink from paper.
 
+use super::noise::{Noise, NoiseMap};
 use super::smooth;
 use crate::options::Threshold;
 use crate::raster::{Mask, Raster};
@@ -26,17 +27,31 @@ const LIGHTER: f32 = 0.75;
 /// Ink of less than this share of Otsu's level makes no lines, not even light ones.
 const LIGHTEST: f32 = 0.8;
 /// The grain that a scan has at least; less cannot be told from rounding.
-pub(crate) const LEAST_GRAIN: f64 = 0.01;
+const LEAST_GRAIN: f64 = 0.01;
 
-/// Spread of the paper's grain, as a share of full ink; 0 for a clean render, whose paper is flat.
-pub(super) fn grain(ink: &Raster<f32>) -> f64 {
-    let [paper, flat, full] = counts(ink, [|i| i < PAPER, |i| i < FLAT, |i| i > 1.0 - PAPER]);
-    // The paper's level is an upper quantile: of grainy paper, most lies below it.
-    if 5 * flat >= 4 * paper {
-        // Without anti-aliasing the edges are staircases, which ask to be smoothed like grain.
-        let grey = ink.data().len() - paper - full;
-        return if 50 * grey < full { LEAST_GRAIN } else { 0.0 };
+/// What is to be seen of the paper before any line is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Paper {
+    /// Spread of its grain, as a share of full ink; 0 where it is flat.
+    pub grain: f64,
+    /// Whether there are shades between it and full ink.
+    pub shades: bool,
+}
+
+impl Paper {
+    pub fn of(ink: &Raster<f32>) -> Self {
+        let [paper, flat, full] = counts(ink, [|i| i < PAPER, |i| i < FLAT, |i| i > 1.0 - PAPER]);
+        // The paper's level is an upper quantile: of grainy paper, most lies below it.
+        if 5 * flat >= 4 * paper {
+            let between = ink.data().len() - paper - full;
+            return Self { grain: 0.0, shades: 50 * between >= full };
+        }
+        Self { grain: grain(ink), shades: true }
     }
+}
+
+/// Spread of grain.
+fn grain(ink: &Raster<f32>) -> f64 {
     // From neighbours, so that uneven light does not count; of these the median, so that lines do not.
     let mut steps: Vec<f32> = Vec::new();
     for y in (0..ink.height()).step_by(3) {
@@ -59,9 +74,21 @@ fn counts<const N: usize>(ink: &Raster<f32>, conditions: [fn(f32) -> bool; N]) -
 }
 
 /// The coverage from which a normalised pixel counts as ink. A clean render's thin lines spread over two
-/// pixels, so its level lies lower.
-pub(super) fn level(noise: f64) -> f32 {
-    if noise > 0.0 { 0.5 } else { 0.4 }
+/// pixels, so the level of sure ink lies lower.
+pub(super) fn level(noise: Noise) -> f32 {
+    noise.between(0.4, 0.5) as f32
+}
+
+/// The pixels of at least the level where they lie.
+pub(super) fn mask(ink: &Raster<f32>, noise: &NoiseMap) -> Mask {
+    let [least, most] = noise.grains();
+    if least == most {
+        let level = level(noise.mean());
+        return ink.mapped(false, |i| i > level);
+    }
+    Raster::from_rows(ink.width(), ink.height(), false, |y, row| {
+        row.iter_mut().enumerate().for_each(|(x, to)| *to = ink[(x, y)] > level(noise.at_pixel(x, y)));
+    })
 }
 
 /// Scales the ink so that a line's typical core is 1, the darkest more, and tells ink from paper.
@@ -69,32 +96,39 @@ pub(super) fn level(noise: f64) -> f32 {
 /// One level serves the whole page when its lines are about equally dark; otherwise each place is measured
 /// against the darkest ink near it, so that light pencil lines hold beside dark ones. On a clean render what is far
 /// lighter than the lines is no line, unless its ink may come in `shades`.
-pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shades: bool) -> (Raster<f32>, Mask) {
+pub(super) fn binarise(
+    ink: Raster<f32>,
+    paper: Paper,
+    noise: &NoiseMap,
+    threshold: Threshold,
+    shades: bool,
+) -> (Raster<f32>, Mask) {
     if let Threshold::Fixed(t) = threshold {
         let mask = ink.mapped(false, |i| f64::from(i) > t);
         return (scaled(ink, (2.0 * t) as f32), mask);
     }
-    let floor = floor(&ink, noise);
+    let floor = floor(&ink, paper.grain);
     let Some((otsu, core)) = global_levels(&ink, floor) else {
         let mask = Raster::filled(ink.width(), ink.height(), false);
         return (ink, mask);
     };
-    if noise == 0.0 && core > 0.8 && !shades {
-        let mask = ink.mapped(false, |i| i > level(noise));
+    if noise.mean().grain() < 0.5 && core > 0.8 && !shades {
+        let mask = mask(&ink, noise);
         return (ink, mask);
     }
     // At the level of the mask, ink still stands out.
-    let least = floor / level(noise);
+    let level = level(noise.mean());
+    let least = floor / level;
     let core = core.max(least);
     let nearby = nearby_core(&ink, (LIGHTEST * otsu).max(least));
-    let ink = if is_even(&ink, &nearby, otsu, core) && !has_light_lines(&ink, &nearby, level(noise) * otsu, core) {
+    let ink = if is_even(&ink, &nearby, otsu, core) && !has_light_lines(&ink, &nearby, level * otsu, core) {
         scaled(ink, core)
     } else {
         Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
             row.iter_mut().zip(ink.row(y)).zip(nearby.row(y)).for_each(|((to, &i), &core)| *to = i / core);
         })
     };
-    let mask = ink.mapped(false, |i| i > level(noise));
+    let mask = mask(&ink, noise);
     (ink, mask)
 }
 
@@ -103,16 +137,16 @@ pub(super) fn binarise(ink: Raster<f32>, noise: f64, threshold: Threshold, shade
 /// Grain is told from neighbouring pixels, and where a camera or its compression has smoothed it, the paper wanders by
 /// more: by what its lighter half does. Where ink covers most of the page that says nothing, so the darkest ink sets a
 /// limit.
-fn floor(ink: &Raster<f32>, noise: f64) -> f32 {
-    let grain = (6.0 * noise).max(0.06) as f32;
+fn floor(ink: &Raster<f32>, grain: f64) -> f32 {
+    let least = (6.0 * grain).max(0.06) as f32;
     let mut values: Vec<f32> = ink.data().iter().step_by((ink.data().len() / 50_000).max(1)).copied().collect();
-    if noise == 0.0 || values.is_empty() {
-        return grain;
+    if grain == 0.0 || values.is_empty() {
+        return least;
     }
     let n = values.len() as f64 - 1.0;
     let mut quantile = |q: f64| *values.select_nth_unstable_by((n * q) as usize, f32::total_cmp).1;
     let (light, middle, dark) = (quantile(0.16), quantile(0.5), quantile(0.999));
-    grain.max((middle + WANDER * (middle - light)).min(DARK_SHARE * dark))
+    least.max((middle + WANDER * (middle - light)).min(DARK_SHARE * dark))
 }
 
 /// The ink in 256 steps.

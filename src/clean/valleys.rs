@@ -5,6 +5,8 @@
 //! profile over a few line widths has two ridges, each as wide as a line. The ink between them is stretched until the
 //! bottom is paper.
 
+use super::noise::NoiseMap;
+use super::threshold::level;
 use crate::raster::{Mask, Raster};
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
@@ -50,12 +52,12 @@ struct Valley {
     here: f32,
 }
 
-/// Takes the ink out of valleys; where less than `level` is left, it counts as paper. Whether there were any.
-pub(super) fn deepen(ink: &mut Raster<f32>, mask: &mut Mask, line_width: f64, level: f32) -> bool {
+/// Takes the ink out of valleys; where less than the mask's level is left, it counts as paper. Whether there were any.
+pub(super) fn deepen(ink: &mut Raster<f32>, mask: &mut Mask, line_width: f64, noise: &NoiseMap) -> bool {
     let between = deepened(ink, line_width);
     for &(x, y, left) in &between {
         ink[(x, y)] = left;
-        mask[(x, y)] &= left > level;
+        mask[(x, y)] &= left > level(noise.at_pixel(x, y));
     }
     !between.is_empty()
 }

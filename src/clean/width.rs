@@ -35,11 +35,25 @@ pub(super) fn ridge_pixels(mask: &Mask, depth: &Raster<f32>) -> Vec<(usize, usiz
     (0..mask.height()).into_par_iter().flat_map_iter(of_row).collect()
 }
 
-/// What is measured at places spread over the ridge, each sorted.
-pub(super) struct Ridge {
-    /// Ink widths in pixels: the narrowest of the cross profiles at each place.
-    pub widths: Vec<f64>,
+/// A place on the ridge of a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RidgePlace {
+    pub point: Point,
+    /// Unit vector across the line.
+    pub normal: Vec2,
+    /// Ink width in pixels: the narrowest of the cross profiles.
+    pub width: f64,
     /// The ink itself.
+    pub ink: f32,
+}
+
+/// What is measured at places spread over the ridge.
+pub(super) struct Ridge {
+    /// The places, row by row.
+    pub places: Vec<RidgePlace>,
+    /// Their widths, sorted.
+    pub widths: Vec<f64>,
+    /// Their ink, sorted.
     pub ink: Vec<f32>,
 }
 
@@ -48,14 +62,17 @@ impl Ridge {
     pub fn of(ink: &Raster<f32>, mask: &Mask, depth: &Raster<f32>) -> Self {
         let ridge = ridge_pixels(mask, depth);
         let sampled = ridge.par_iter().step_by((ridge.len() / SAMPLES).max(1));
-        let width = |&(x, y): &(usize, usize)| {
-            let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
-            Some((narrowest_direction(ink, centre, depth[(x, y)])?.1, ink[(x, y)]))
+        let place = |&(x, y): &(usize, usize)| {
+            let point = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            let (normal, width) = narrowest_direction(ink, point, depth[(x, y)])?;
+            Some(RidgePlace { point, normal, width, ink: ink[(x, y)] })
         };
-        let (mut widths, mut ink): (Vec<f64>, Vec<f32>) = sampled.filter_map(width).unzip();
+        let places: Vec<RidgePlace> = sampled.filter_map(place).collect();
+        let mut widths: Vec<f64> = places.iter().map(|place| place.width).collect();
+        let mut ink: Vec<f32> = places.iter().map(|place| place.ink).collect();
         widths.sort_by(f64::total_cmp);
         ink.sort_by(f32::total_cmp);
-        Self { widths, ink }
+        Self { places, widths, ink }
     }
 
     /// The median width in pixels; 1 without ink.

@@ -35,7 +35,7 @@ const SMOOTHING: f64 = 2.25;
 
 /// Standard deviation of the distance of coefficients in it: noise makes like coefficients differ more.
 const ALIKE: f32 = 0.2;
-const CLEAN_ALIKE: f32 = 0.14;
+const SURE_ALIKE: f32 = 0.14;
 
 /// The field from the U-Net, Taktasheva et al. 2019: the mean of what the network sees in the drawing and in its mirror image.
 #[derive(Debug)]
@@ -117,7 +117,7 @@ impl FieldEstimator for UNet {
         };
         cancel.check()?;
         let field = PolyVectorField::from_parts(width, height, parts);
-        let alike = if image.noise > 0.0 { ALIKE } else { CLEAN_ALIKE };
+        let alike = image.noise.mean().between(SURE_ALIKE.into(), ALIKE.into()) as f32;
         Ok(field.smoothed(&image.mask, (SMOOTHING * image.line_width).clamp(2.0, 10.0), alike))
     }
 }

@@ -38,8 +38,8 @@ impl fmt::Debug for Pass {
 pub enum When {
     /// On every page.
     Always,
-    /// On a page with grain.
-    Noisy,
+    /// On a page with unsure ink.
+    Unsure,
     /// On a page in colour.
     Colored,
     /// Where strokes are to be outlines.
@@ -50,7 +50,7 @@ impl When {
     pub(super) fn holds(self, draft: &Draft) -> bool {
         match self {
             Self::Always => true,
-            Self::Noisy => draft.image.noise > 0.0,
+            Self::Unsure => !draft.image.noise.is_sure(),
             Self::Colored => draft.image.colors.is_some(),
             Self::Outlines => draft.options.width == StrokeWidth::Outline,
         }
@@ -93,7 +93,7 @@ pub static REPAIRS: [Pass; 10] = [
     },
     Pass {
         name: "gap before a body",
-        when: When::Noisy,
+        when: When::Unsure,
         why: "before all that join: what was drawn apart must not be taken for the arm of a junction",
         guarded_by: "",
         run: |draft| gap_before_body::take_back(draft.image, &mut draft.lines),

@@ -33,10 +33,8 @@ const BACK_IN: f64 = 4.0;
 const LED: f64 = 6.0;
 const TEE_COS: f64 = 0.906;
 
-/// On a noisy line, the middle has ended where it has lost this share of its ink.
-const END_NOISY: f32 = 0.5;
-/// How far around a point a clean line must be whole, in pixels.
-const WHOLE: f64 = 1.0;
+/// A line that was led round has ended where its middle has lost this share of its ink.
+const ENDED: f32 = 0.5;
 
 /// A point of a walk.
 struct Step {
@@ -229,7 +227,7 @@ impl<'a, 'b> Walker<'a, 'b> {
         let heading = tail.heading;
         while let Some(last) = steps.last()
             && let point = last.point + heading * STEP
-            && self.image.ink.sample(point) >= END_NOISY * self.core
+            && self.image.ink.sample(point) >= ENDED * self.core
         {
             steps.push(Step { point, heading, width: f64::NAN, drift: 0.0 });
         }
@@ -256,11 +254,7 @@ impl<'a, 'b> Walker<'a, 'b> {
         let heading = self.next_heading(steps, coasting);
         let mut point = here.point + heading * STEP;
         let normal = heading.turn_90();
-        let inked = if self.image.noise > 0.0 {
-            self.image.ink.sample(point) >= END_NOISY * self.core
-        } else {
-            self.image.is_inked(point - heading * WHOLE, point + heading * WHOLE, self.core.min(1.0))
-        };
+        let inked = self.image.goes_on(point, heading, self.core);
         let profile = self.profile(point, normal).filter(|_| inked)?;
         if coasting {
             return Some(Step { point, heading, width: f64::NAN, drift: 0.0 });

@@ -5,7 +5,7 @@
 //! `sum w |p + c2 + c0 conj(p)|^2`, depends on them by three moments only: `m0 = sum w`, `m2 = sum w p` and
 //! `m4 = sum w p^2`.
 
-use fieldtrace::clean::LineImage;
+use fieldtrace::clean::{LineImage, Noise, NoiseMap};
 use fieldtrace::raster::Raster;
 use num_complex::Complex64;
 use std::ops::{AddAssign, Mul};
@@ -109,7 +109,7 @@ mod tests {
             depth,
             line_width: 3.0,
             scale: 1.0,
-            noise: 0.0,
+            noise: NoiseMap::even(Noise::default()),
             blur: 0.0,
             solids: Vec::new(),
             broad: None,

@@ -104,7 +104,10 @@ impl EnergyEstimator {
 
     /// `(c2, c0)` at each pixel of one piece of ink.
     fn solve(&self, image: &LineImage, piece: &Component) -> Vec<Pair> {
-        let weights = Weights { smoothness: self.smoothness * (1.0 + self.grain * image.noise), normal: self.normal };
+        let weights = Weights {
+            smoothness: self.smoothness * (1.0 + self.grain * image.noise.mean().along),
+            normal: self.normal,
+        };
         let system = System::new(piece, &edges(image, piece), &weights);
         solve::solve(&system, self.accuracy, self.max_iterations).0
     }

@@ -34,7 +34,7 @@ fn bare(ink: Raster<f32>) -> LineImage {
         depth,
         line_width: 3.0,
         scale: 1.0,
-        noise: 0.0,
+        noise: NoiseMap::even(Noise::default()),
         blur: 0.0,
         solids: Vec::new(),
         broad: None,

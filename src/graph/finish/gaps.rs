@@ -5,7 +5,7 @@
 //! as they are, or joined into one dashed stroke where that is asked for.
 
 use super::confidence::{PointsOfEdges, course, points_of_edges};
-use crate::clean::{LEAST_GRAIN, LineImage};
+use crate::clean::LineImage;
 use crate::drawing::Dashes;
 use crate::graph::lines::arm_line;
 use crate::graph::point_index::PointIndex;
@@ -16,9 +16,8 @@ use kurbo::{CubicBez, Line, ParamCurve, ParamCurveNearest, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
 
-/// The gap that is bridged in a scan, in line widths, when nothing else is asked for. On a clean render every gap
-/// was meant.
-const SCAN_GAP: f64 = 1.5;
+/// The gap that is bridged in unsure ink, in line widths, when nothing else is asked for. In sure ink every gap was meant.
+const UNSURE_GAP: f64 = 1.5;
 /// Between dashes there is at most so much paper, in line widths.
 const DASH_GAP: f64 = 8.0;
 /// How far an end may lie beside the other's course: in line widths, and as a share of the distance.
@@ -66,15 +65,16 @@ type Dashed = (Vec<Link>, Option<Dashes>);
 
 /// Bridges gaps and finds dashes, as the options ask. Returns how many gaps were bridged.
 pub(in crate::graph) fn bridge(image: &LineImage, graph: &mut StrokeGraph, options: &Options) -> usize {
-    let gap = options.gap.unwrap_or(if image.noise > LEAST_GRAIN { SCAN_GAP } else { 0.0 }) * image.line_width;
+    let most = options.gap.unwrap_or(image.noise.grains()[1] * UNSURE_GAP) * image.line_width;
     let join = options.dashes == Dashing::Join;
-    if gap <= 0.0 && !join {
+    if most <= 0.0 && !join {
         return 0;
     }
     let finder = Finder::new(image, graph);
-    let links = finder.links(gap.max(DASH_GAP * image.line_width));
+    let links = finder.links(most.max(DASH_GAP * image.line_width));
     let (dashed, plain) = finder.dashes(&links);
-    let short: Vec<Link> = plain.into_iter().filter(|l| l.paper <= gap && finder.is_short(l)).collect();
+    let short: Vec<Link> =
+        plain.into_iter().filter(|l| l.paper <= finder.bridged(l, options.gap) && finder.is_short(l)).collect();
     let mut seams: Vec<(Link, Option<Dashes>)> = short.into_iter().map(|link| (link, None)).collect();
     if join {
         let joined = dashed.into_iter().filter_map(|(links, dashes)| Some((links, dashes?)));
@@ -144,6 +144,13 @@ impl<'a> Finder<'a> {
     fn is_short(&self, link: &Link) -> bool {
         let length = |end: usize| self.ends[end].as_ref().map_or(0.0, |e| e.length);
         link.ends.iter().all(|&end| length(end) > 1.5 * link.paper.max(self.image.line_width))
+    }
+
+    /// The paper that is bridged where a link lies, in pixels.
+    fn bridged(&self, link: &Link, gap: Option<f64>) -> f64 {
+        let ends = link.ends.iter().filter_map(|&end| self.ends[end].as_ref());
+        let grain = ends.map(|end| self.image.noise.at(end.point).grain()).fold(0.0, f64::max);
+        gap.unwrap_or(UNSURE_GAP * grain) * self.image.line_width
     }
 
     /// Chains of dashes with their links, and the links that are between none. Long and short dashes in turns, as a centre

@@ -1,4 +1,4 @@
-//! Ends on a noisy page that face another line's body across a gap are taken back to where the pen stopped.
+//! Ends in unsure ink that face another line's body across a gap are taken back to where the pen stopped.
 //!
 //! Under the blur of a scan a narrow gap is not white, and a walk that has to bear with grain runs across it, into the
 //! other line. What the pixels say of the gap decides (`approach`).
@@ -17,12 +17,14 @@ const AHEAD: f64 = 2.5;
 const INNER: f64 = 1.6;
 /// How much of a body is looked at to either side, in line widths.
 const AROUND: f64 = 5.0;
+/// Where the ink is surer than this, as a share of grain, a gap is seen by itself.
+const GRAIN: f64 = 0.5;
 /// Of a thinner pen, in pixels, the cap is not seen.
 const THINNEST: f64 = 2.4;
 /// An end that comes in at a smaller angle than this sine's (30 degrees) hides its cap in the body's ink.
 const LEAST_SINE: f64 = 0.5;
 
-/// Takes back every end of a noisy page that faces a body across a gap. Returns how many there are.
+/// Takes back every end in unsure ink that faces a body across a gap. Returns how many there are.
 pub(in crate::graph) fn take_back(image: &LineImage, lines: &mut Lines) -> usize {
     let before_gap = |end: &End| Some((end.line, end.side, gap(image, lines, end)?));
     let ends = lines.ends(image).par_iter().flatten().filter(|end| end.state != EndState::CutOff);
@@ -35,6 +37,9 @@ pub(in crate::graph) fn take_back(image: &LineImage, lines: &mut Lines) -> usize
 
 /// The middle of the gap between an end and the body that it faces, if there is one.
 fn gap(image: &LineImage, lines: &Lines, end: &End) -> Option<Point> {
+    if image.noise.at(end.point).grain() < GRAIN {
+        return None;
+    }
     let (place, foot) = body(image, lines, end)?;
     let (_, heading) = arm_line(&end.tail, foot, image.line_width);
     if heading.cross(lines.direction(place)).abs() < LEAST_SINE {

@@ -204,9 +204,9 @@ impl Finder<'_> {
         let free = self.ends.iter().flatten().filter(|e| e.state == EndState::Open && !met[e.id()]);
         let free: Vec<&End> = free.collect();
         let index = PointIndex::new(free.iter().map(|e| e.point).enumerate());
-        let widths = if self.image.noise > 0.0 { BLUNT } else { BLUNT_ON_CLEAN };
-        let reach = widths * self.image.line_width.max(1.5);
         let nearest = |end: &End| {
+            let widths = self.image.noise.at(end.point).between(BLUNT_ON_CLEAN, BLUNT);
+            let reach = widths * self.image.line_width.max(1.5);
             let others = index.by_distance(end.point).map(|near| free[near]);
             let mut others = others.take_while(|o| (o.point - end.point).hypot() <= reach);
             // A short line's own ends are not one another's.

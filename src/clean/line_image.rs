@@ -1,0 +1,152 @@
+//! The ink of a drawing as the later stages see it.
+
+use super::noise::NoiseMap;
+use crate::drawing::Fill;
+use crate::error::{Error, Result};
+use crate::raster::{Mask, Raster};
+use kurbo::{Point, Vec2};
+use std::f64::consts::TAU;
+
+/// The ink of a drawing, evenly lit and at a size that the later stages know.
+#[derive(Clone, Debug)]
+pub struct LineImage {
+    /// How much of each pixel is inked: 0 on paper, 1 in the middle of a typical line; anti-aliased edges are
+    /// kept. On a scan, the darkest ink has up to 2.
+    pub ink: Raster<f32>,
+    /// The pixels that count as ink of lines; solid regions are not among them.
+    pub mask: Mask,
+    /// Distance of each mask pixel's centre to the nearest paper pixel's centre; 0 off the mask.
+    pub depth: Raster<f32>,
+    /// Typical line width in pixels of this raster.
+    pub line_width: f64,
+    /// Pixels of this raster per pixel of the scan.
+    pub scale: f64,
+    /// How far the ink of lines can be trusted, place by place, in pixels of this raster.
+    pub noise: NoiseMap,
+    /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render, unless it was
+    /// enlarged.
+    pub blur: f64,
+    /// Regions too wide to be lines, in pixels of this raster.
+    pub solids: Vec<Fill>,
+    /// Lines too broad to be traced beside these, as an image of their own.
+    pub broad: Option<Box<LineImage>>,
+    /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
+    /// ink is grey.
+    pub colors: Option<Raster<[u8; 3]>>,
+}
+
+/// Where lines that touch are sure, they show no gap longer than this, in pixels of the scan.
+const SURE_GAP: f64 = 0.15;
+/// Where ink is unsure, the grain of a line that touches another looks like a gap of at most this length, in pixels.
+const UNSURE_GAP: f64 = 0.65;
+/// A line that goes on is whole for this far around each of its points, in pixels. Where ink is unsure, half of that may be
+/// missing: at the end of a blurred line it is.
+const WHOLE: f64 = 1.0;
+/// Bounds of the sizes of a line image, in pixels: far beyond those of any drawing.
+const LEAST_SIZE: f64 = 1e-3;
+const LARGEST_SIZE: f64 = 1e4;
+/// The middle of a line that is averaged over to see past its grain, as a share of its width to either side.
+const CORE_BAND: f64 = 0.35;
+
+impl LineImage {
+    /// Whether the ink of a line, `core` in its middle, runs from one point to another without a break.
+    ///
+    /// The ink that is missing along the way adds up to the length of the gap, however it lies on the pixels and
+    /// however much it is blurred.
+    pub(crate) fn is_inked(&self, a: Point, b: Point, core: f32) -> bool {
+        let noise = self.noise.at(a.midpoint(b));
+        let longest = noise.between(SURE_GAP * self.scale.max(1.0), UNSURE_GAP);
+        let length = (b - a).hypot();
+        if noise.grain() == 0.0 {
+            return self.missing(a, b, core) <= longest;
+        }
+        let heading = if length > 1e-9 { (b - a) / length } else { return true };
+        let profile = GapProfile::of(self);
+        !way(a, b).any(|p| profile.gap(self, p, heading, core) > longest)
+    }
+
+    /// Whether a line with `core` in its middle goes on through a point.
+    pub(crate) fn goes_on(&self, p: Point, heading: Vec2, core: f32) -> bool {
+        let missing = self.missing(p - heading * WHOLE, p + heading * WHOLE, core.min(1.0));
+        missing <= self.noise.at(p).between(SURE_GAP * self.scale.max(1.0), WHOLE)
+    }
+
+    /// Length of the ink that is missing on the way from one point to another, in pixels.
+    fn missing(&self, a: Point, b: Point, core: f32) -> f64 {
+        let (sum, count) = way(a, b)
+            .fold((0.0, 0), |(sum, count), p| (sum + (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0), count + 1));
+        sum * (b - a).hypot() / f64::from((count - 1).max(1))
+    }
+
+    /// Ink in the middle of a line: where it is unsure the mean across it, since single pixels are mostly grain.
+    pub(crate) fn core(&self, p: Point, heading: Vec2) -> f32 {
+        let grain = self.noise.at(p).grain();
+        if grain == 0.0 {
+            return self.ink.sample(p);
+        }
+        let step = heading.turn_90() * (0.5 * CORE_BAND * self.line_width * grain);
+        (-2..=2).map(|k| self.ink.sample(p + step * f64::from(k))).sum::<f32>() / 5.0
+    }
+}
+
+/// Points a quarter of a pixel apart, both ends included.
+fn way(a: Point, b: Point) -> impl Iterator<Item = Point> {
+    let count = ((b - a).hypot() / 0.25).ceil().max(1.0) as usize;
+    (0..=count).map(move |k| a.lerp(b, k as f64 / count as f64))
+}
+
+/// The ink that a gap of unit length lacks along a line, once the scan has blurred it.
+struct GapProfile {
+    /// Distance from the gap's middle in pixels, and the share that is missing there.
+    samples: Vec<(f64, f64)>,
+    /// Sum of the squared shares.
+    whole: f64,
+}
+
+impl GapProfile {
+    fn of(image: &LineImage) -> Self {
+        let deviation = image.blur.max(0.7);
+        let spacing = 0.25;
+        let reach = (2.0 * deviation / spacing).ceil() as i32;
+        let missing = |offset: f64| (-0.5 * (offset / deviation).powi(2)).exp() / (deviation * TAU.sqrt());
+        let samples = (-reach..=reach).map(|k| spacing * f64::from(k)).map(|offset| (offset, missing(offset)));
+        let samples: Vec<(f64, f64)> = samples.collect();
+        let whole = samples.iter().map(|(_, missing)| missing * missing).sum();
+        Self { samples, whole }
+    }
+
+    /// Length of the gap at a point of a noisy line, in pixels: the least squares size of a gap that the scan has
+    /// blurred.
+    fn gap(&self, image: &LineImage, p: Point, heading: Vec2, core: f32) -> f64 {
+        let missing = |offset: f64| 1.0 - f64::from(image.core(p + heading * offset, heading) / core);
+        let seen: f64 = self.samples.iter().map(|&(offset, share)| share * missing(offset)).sum();
+        seen / self.whole
+    }
+}
+
+impl LineImage {
+    /// Checks what the later stages rely on, after somebody else may have changed it.
+    ///
+    /// # Errors
+    /// [`Error::Broken`].
+    pub(crate) fn validate(&self) -> Result<()> {
+        let broken = |reason: String| Err(Error::Broken { stage: "clean", reason });
+        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size())] {
+            if size != self.ink.size() {
+                return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
+            }
+        }
+        let positive = [("line width", self.line_width), ("scale", self.scale)].map(|(what, v)| (what, v, LEAST_SIZE));
+        if !self.noise.is_valid() {
+            return broken("the noise has impossible numbers".into());
+        }
+        match positive
+            .into_iter()
+            .chain([("blur", self.blur, 0.0)])
+            .find(|(_, value, least)| !(*least..=LARGEST_SIZE).contains(value))
+        {
+            Some((what, value, _)) => broken(format!("the {what} is {value}")),
+            None => self.broad.as_ref().map_or(Ok(()), |broad| broad.validate()),
+        }
+    }
+}
