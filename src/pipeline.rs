@@ -47,7 +47,7 @@ impl Vectorizer {
     /// The same without one of the passes between streamlines and graph, to see what it is worth.
     ///
     /// # Errors
-    /// [`Error::Option`] when no pass of [`graph::passes`] has the name.
+    /// [`Error::Option`] when no pass of [`graph::passes()`] has the name.
     pub fn without(self, pass: &str) -> Result<Self> {
         Ok(Self { passes: self.passes.without(pass)?, ..self })
     }

@@ -42,6 +42,13 @@
 //!   stroke       a trail once it is fitted
 //! ```
 //!
+//! # Constants
+//!
+//! Each lies beside what it decides. Lengths are in widths of the page's line, since all that is decided here scales with the
+//! pen; what is in pixels, for the raster's sake, says so. Angles are in radians; `_COS` is the cosine of one, and directions
+//! within that angle pass. What gives no reason for its value was found by trying, and is guarded by the sweep that the row
+//! of its pass names; of contacts, nodes and pairing by `tests/junctions.rs` and `tests/encounters.rs`.
+//!
 //! # The order of the modules
 //!
 //! `model`, `point_index`, `lines`, `dots`, `pens`, `resolve`, `repair`, `assemble`, `finish`, `passes`, `build`: each uses

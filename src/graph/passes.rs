@@ -88,42 +88,42 @@ pub static REPAIRS: [Pass; 10] = [
         name: "overlap",
         when: When::Always,
         why: "before all that look at ends: where two walks lie on each other, neither tells where its line was going",
-        guarded_by: "",
+        guarded_by: "passes::what_an_end_shares_with_another_line_is_cut_off",
         run: |draft| overlap::cut_off(draft.image, &mut draft.lines),
     },
     Pass {
         name: "gap before a body",
         when: When::Unsure,
         why: "before all that join: what was drawn apart must not be taken for the arm of a junction",
-        guarded_by: "",
+        guarded_by: "junctions::a_pencil_stem_that_stops_short_stays_apart",
         run: |draft| gap_before_body::take_back(draft.image, &mut draft.lines),
     },
     Pass {
         name: "tangency",
         when: When::Always,
         why: "while lines are still as they were walked: it compares their arms on both sides of shared ink",
-        guarded_by: "",
+        guarded_by: "encounters::shallow_crossings_are_two_straight_strokes",
         run: |draft| tangency::part(draft.image, &mut draft.lines),
     },
     Pass {
         name: "cusp",
         when: When::Always,
         why: "before fork: two lines that run into one and end there look like a fork, of which one line would be the stem",
-        guarded_by: "",
+        guarded_by: "encounters::humps_of_a_coil_meet_at_the_tip_between_them",
         run: |draft| cusp::sharpen(draft.image, &mut draft.lines),
     },
     Pass {
         name: "fork",
         when: When::Always,
         why: "before tangent end, which leads the arm that leaves, and has to know which one that is",
-        guarded_by: "",
+        guarded_by: "encounters::two_arcs_that_leave_a_line_at_one_point_leave_it_whole",
         run: |draft| fork::straighten(draft.image, &mut draft.lines),
     },
     Pass {
         name: "colour change",
         when: When::Colored,
         why: "after all that join lines into longer ones, and before ends are led: those of its cuts are led as well",
-        guarded_by: "",
+        guarded_by: "color::a_stroke_ends_where_its_colour_does",
         run: |draft| {
             draft.pens = Pens::of(draft.image, &draft.lines, &draft.dots);
             let changes = draft.pens.as_ref().map_or(Vec::new(), |pens| pens.changes(&draft.lines));
@@ -134,14 +134,14 @@ pub static REPAIRS: [Pass; 10] = [
         name: "tangent end",
         when: When::Always,
         why: "after fork has told which arms end; before swapped arms, which looks at lines over all of the ink they share",
-        guarded_by: "",
+        guarded_by: "passes::an_arc_is_led_to_where_it_leaves_a_line",
         run: |draft| tangent_end::lead(draft.image, &mut draft.lines),
     },
     Pass {
         name: "swapped arms",
         when: When::Always,
         why: "once every line reaches to where it ends: only then is it seen which lines share ink, and how long",
-        guarded_by: "",
+        guarded_by: "encounters::three_lines_through_one_point_are_three_straight_strokes",
         run: |draft| {
             let cuts = swapped_arms::cuts(draft.image, &draft.lines);
             draft.lines.cut(&cuts)
@@ -151,7 +151,7 @@ pub static REPAIRS: [Pass; 10] = [
         name: "wrong arm",
         when: When::Always,
         why: "last: it compares arms at nodes, and those are known once all ends are where they belong",
-        guarded_by: "",
+        guarded_by: "encounters::corners_that_share_their_vertex_stay_two",
         run: |draft| {
             let nodes = resolve(draft.image, &draft.lines);
             let cuts = wrong_arm::cuts(draft.image, &draft.lines, &nodes);
@@ -167,28 +167,28 @@ pub static FINISHES: [Pass; 4] = [
         name: "colour",
         when: When::Colored,
         why: "before gaps: ends of two pens are not one line",
-        guarded_by: "",
+        guarded_by: "color::crossing_lines_keep_their_colours",
         run: |draft| draft.pens.as_ref().map_or(0, |pens| pens.paint(&mut draft.graph)),
     },
     Pass {
         name: "taper",
         when: When::Outlines,
         why: "before gaps: it moves the ends of tapering strokes",
-        guarded_by: "",
+        guarded_by: "outline::a_taper_is_kept_with_few_pieces",
         run: |draft| finish::taper::measure(draft.image, &mut draft.graph),
     },
     Pass {
         name: "gap",
         when: When::Always,
         why: "after all that move ends or tell them apart",
-        guarded_by: "",
+        guarded_by: "gaps::a_pencil_line_goes_on_behind_a_short_break",
         run: |draft| finish::gaps::bridge(draft.image, &mut draft.graph, draft.options),
     },
     Pass {
         name: "confidence",
         when: When::Always,
         why: "last: it tells how sure what has become of the junctions is",
-        guarded_by: "",
+        guarded_by: "passes::what_is_as_good_another_way_is_doubtful",
         run: |draft| finish::confidence::rate(&mut draft.graph),
     },
 ];

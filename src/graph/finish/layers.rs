@@ -3,7 +3,7 @@
 //! Where a fine line runs under a broad one its ink cannot be seen. What comes out on the other side as it went in is one
 //! line that crosses; what ends at the broad line's edge is drawn out to its middle, as a pen would have been.
 
-use super::gaps::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
+use super::ends::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
 use crate::clean::RIM;
 use crate::drawing::Dashes;
 use crate::graph::lines::{EndState, Line, Lines, Place};

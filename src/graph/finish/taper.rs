@@ -15,6 +15,9 @@ use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 const LONGEST_JUNCTION: f64 = 3.0;
 /// Points to both sides that tell the direction.
 const AROUND: usize = 6;
+/// Ink is looked at this many times its depth, and so many pixels, to either side of a point.
+const ACROSS: f64 = 2.5;
+const ACROSS_PIXELS: f64 = 2.0;
 /// Times that a point is moved to the middle of its ink.
 const ROUNDS: usize = 3;
 /// As many measured points at an end tell the width that its place was found by.
@@ -60,7 +63,7 @@ fn measure_stretch(image: &LineImage, edge: &mut Edge, from: usize, to: usize) {
         }
         let normal: Vec2 = along.normalize().turn_90();
         let depth = f64::from(image.depth.at(points[k]).unwrap_or(0.0));
-        let profile = cross_profile(&image.ink, points[k], normal, 2.5 * depth + 2.0);
+        let profile = cross_profile(&image.ink, points[k], normal, ACROSS * depth + ACROSS_PIXELS);
         if let Some((width, middle)) = profile.and_then(|p| Some((p.width()?, p.middle()?)))
             && middle.abs() < 0.5 * width
         {

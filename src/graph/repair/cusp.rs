@@ -20,7 +20,7 @@ const WIDEST: f64 = 1.35;
 /// Both lines, bent on as they are, come by the tip within so many line widths, and within this cosine's angle (35 degrees)
 /// of one another.
 const BESIDE: f64 = 0.6;
-const ALONG: f64 = 0.82;
+const ALONG_COS: f64 = 0.82;
 /// Each shows where it is so many line widths apart from the other; its course is that over so many.
 const APART: f64 = 1.15;
 const OVER: f64 = 3.0;
@@ -65,7 +65,7 @@ fn cusp(image: &LineImage, lines: &Lines, [a, b]: [&End; 2], tip: Point) -> Opti
     }
     let there = arms.each_ref().map(|arm| arm_line(&arm.tail, tip, lw));
     let passes = |(point, heading): &(Point, Vec2)| heading.cross(tip - *point).abs() < BESIDE * a.width;
-    if !there.iter().all(passes) || there[0].1.dot(there[1].1) < ALONG {
+    if !there.iter().all(passes) || there[0].1.dot(there[1].1) < ALONG_COS {
         return None;
     }
     let axis = (there[0].1 + there[1].1).normalize();

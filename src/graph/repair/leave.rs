@@ -117,3 +117,42 @@ fn with_error(samples: &[Sample], rest: f64, leave: Leave) -> Leave {
     let at = |p: &Sample| if p.s > leave.first(p.half) { (leave.at(p.s) + leave.secant(p)).max(rest) } else { rest };
     Leave { error: samples.iter().map(|p| (p.y - at(p)).powi(2)).sum(), ..leave }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The middle of a line beside a body of its own width, measured from before it leaves to well after.
+    fn samples(y: impl Fn(f64) -> f64) -> Vec<Sample> {
+        (-20..40).map(|k| STEP * f64::from(k)).map(|s| Sample { s, y: y(s), half: 0.0 }).collect()
+    }
+
+    #[test]
+    fn a_circle_leaves_where_it_touches() {
+        for radius in [25.0f64, 45.0, 90.0] {
+            for s0 in [-3.0, 0.0, 2.2] {
+                let found = samples(|s| radius - (radius.powi(2) - (s - s0).max(0.0).powi(2)).sqrt());
+                let leave = leave(&found, 0.0).expect("a touch");
+                assert!((leave.s0 - s0).abs() < 1.0 && leave.slope == 0.0, "{radius} {s0}: {leave:?}");
+                assert!((leave.curvature * radius - 1.0).abs() < 0.1, "{radius} {s0}: {leave:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_slanting_line_leaves_at_its_angle() {
+        for slope in [0.15, 0.3, 0.45] {
+            for s0 in [-3.0, 0.0, 2.2] {
+                let leave = leave(&samples(|s| slope * (s - s0).max(0.0)), 0.0).expect("a meeting");
+                assert!((leave.s0 - s0).abs() < 0.5 && (leave.slope - slope).abs() < 0.05, "{slope} {s0}: {leave:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_that_stays_beside_leaves_nowhere() {
+        let beside = samples(|_| 0.0);
+        assert!(leave(&beside, 0.0).is_none_or(|leave| leave.at(19.0).abs() < 0.1));
+        assert!(leave(&beside[..3], 0.0).is_none());
+    }
+}

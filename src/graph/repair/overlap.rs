@@ -12,7 +12,7 @@ use crate::streamline::STEP;
 const SAME: f64 = 0.35;
 const SAME_PIXELS: f64 = 0.75;
 /// Directions that differ by less than this cosine's angle (25 degrees) are one.
-const ALONG: f64 = 0.906;
+const ALONG_COS: f64 = 0.906;
 /// A line that leaves the other for no more than this many line widths has not left it.
 const APART: f64 = 0.5;
 /// Overlaps shorter than this many line widths stay.
@@ -59,7 +59,7 @@ fn shared(image: &LineImage, lines: &Lines, kept: &[(usize, usize)], line: usize
             let at = place.at.round() as usize;
             place.line != line
                 && (lines[place.line].closed || (a..b).contains(&at))
-                && lines[place.line].direction_at(at).dot(heading).abs() > ALONG
+                && lines[place.line].direction_at(at).dot(heading).abs() > ALONG_COS
         })
     };
     let mut last_shared = 0;

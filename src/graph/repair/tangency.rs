@@ -28,7 +28,7 @@ const MIDDLE: f64 = 8.0;
 /// An arm's course is that of this many line widths.
 const OVER: f64 = 3.0;
 /// All arms run along one another within this cosine's angle (40 degrees).
-const ALONG: f64 = 0.766;
+const ALONG_COS: f64 = 0.766;
 /// Ink that a stroke runs through has at least this much of a line's.
 const INKED: f32 = 0.4;
 
@@ -208,7 +208,7 @@ fn repaired(image: &LineImage, lines: &Lines, group: &[Stretch]) -> Option<[Link
     let middle = arms.iter().fold(Vec2::ZERO, |sum, arm| sum + 0.25 * arm.tail.point.to_vec2()).to_point();
     let heading = |arm: &Arm| arm_line(&arm.tail, middle, image.line_width).1;
     let axis = heading(&arms[0]);
-    if arms.iter().any(|arm| heading(arm).dot(axis).abs() < ALONG) {
+    if arms.iter().any(|arm| heading(arm).dot(axis).abs() < ALONG_COS) {
         return None;
     }
     let (a, b): (Vec<Arm>, Vec<Arm>) = arms.iter().partition(|arm| heading(arm).dot(axis) > 0.0);

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 
 /// A body is looked for within this many line widths of an end, running along it within this cosine's angle (50 degrees).
 const NEAR: f64 = 1.2;
-const ALONG: f64 = 0.64;
+const ALONG_COS: f64 = 0.64;
 /// The end's course, drawn out to the body, comes in within this cosine's angle (35 degrees).
-const ARRIVING: f64 = 0.82;
+const ARRIVING_COS: f64 = 0.82;
 /// A line that comes in at an angle meets the body this many line widths from its ends.
 const CLEAR: f64 = 2.0;
 /// The edge is measured from this many line widths before the end's last point on the body, or from where it has come down
@@ -43,6 +43,10 @@ const JUMP: f64 = 0.3;
 const BULGE: f64 = 0.12;
 const THICK: f64 = 2.0;
 const FEWEST: usize = 6;
+/// Fainter ink than twice this, as a share of full ink, has no edge.
+const FAINT: f32 = 0.15;
+/// Of the line's own points, so many times as many are looked at as of the body's edge after the end.
+const OWN: f64 = 4.0;
 /// On which side of the body a line lies is told this many line widths from its end.
 const INSIDE: f64 = 4.0;
 
@@ -63,7 +67,7 @@ fn solve(image: &LineImage, lines: &Lines, end: &End) -> Option<Lead> {
     let lw = image.line_width;
     let body = *bodies(lines, end, NEAR * lw).first()?;
     let arriving = arm_line(&end.tail, lines.point(body), lw).1;
-    if arriving.dot(lines.direction(body)).abs() < ARRIVING {
+    if arriving.dot(lines.direction(body)).abs() < ARRIVING_COS {
         return None;
     }
     let frame = Frame::new(lines, body, end, lw)?;
@@ -104,7 +108,7 @@ pub(super) fn bodies(lines: &Lines, end: &End, radius: f64) -> Vec<Place> {
     let mut bodies: Vec<Place> = Vec::new();
     for (place, ..) in lines.near(end.point, radius) {
         let direction = lines.direction(place);
-        let is_along = direction.dot(end.tail.heading).abs() > ALONG;
+        let is_along = direction.dot(end.tail.heading).abs() > ALONG_COS;
         if is_along && place.line != end.line && bodies.iter().all(|body| body.line != place.line) {
             bodies.push(place);
         }
@@ -174,7 +178,7 @@ impl<'a> Frame<'a> {
             let (s, y) = self.locate(line.at_end(side, k))?;
             (y < reach).then_some((Sample { s, y, half: 0.0 }, line.is_alone(line.inwards(side, k))))
         });
-        own.take((4.0 * self.range[1] / STEP) as usize).collect()
+        own.take((OWN * self.range[1] / STEP) as usize).collect()
     }
 
     /// How far the line's middle must be from the body's for the edge of their ink to lie where it does.
@@ -212,7 +216,7 @@ fn edge(image: &LineImage, p: Point, normal: Vec2, reach: f64) -> Option<f64> {
     const SPACING: f64 = 0.25;
     let at = |k: usize| image.ink.sample(p + normal * (SPACING * k as f64));
     let half = 0.5 * at(0).min(1.0);
-    if half < 0.15 {
+    if half < FAINT {
         return None;
     }
     let k = (1..=(reach / SPACING) as usize).find(|&k| at(k) < half)?;

@@ -8,18 +8,37 @@ use kurbo::{Line as Segment, Point, Vec2};
 use rayon::prelude::*;
 
 /// An end sticks out of a line rather than ending at it when it goes further than the line's edge by this
-/// share of a line width.
+/// share of a line width, and of so many pixels at least. Empirical, guarded by `junctions.rs`.
 const PROTRUSION: f64 = 0.42;
+const THIN: f64 = 2.0;
 /// Parts of one line are taken for different lines when they are this many line widths apart along it.
 const OWN: f64 = 4.0;
-
+/// A line that ends within this many line widths of where it is met ends there.
+const AT_END: f64 = 0.8;
 /// Two ends that run along each other for at most this many line widths are one line.
 const OVERLAP: f64 = 10.0;
-
+/// Lines run along each other within this cosine's angle (53 degrees).
+const ALONG_COS: f64 = 0.6;
+/// An end is drawn out through ink by this many line widths and pixels at most: a good half, for the walk stops before the
+/// ink does; and more where it ran into another line, at a small angle.
+const DRAWN_OUT: f64 = 0.6;
+const DRAWN_OUT_RAN_IN: f64 = 3.0;
+const DRAWN_OUT_PIXELS: f64 = 0.5;
+/// An end meets a line beside it within this many line widths, of so many pixels at least. Where it ran in, the line is known
+/// to be there and is nearer.
+const BESIDE: f64 = 0.9;
+const BESIDE_RAN_IN: f64 = 0.75;
+const THINNEST: f64 = 1.5;
+/// Two inks are one for the longer the smaller the angle, down to this sine's (25 degrees): at less, lines run into one another.
+const SHARED_SINE: f64 = 0.42;
+/// A line's edge is the further away the smaller the angle, down to this sine's (30 degrees).
+const EDGE_SINE: f64 = 0.5;
 /// How far apart, in line widths, the walks along the arms of a blunt corner may end; where no grain can pass for ink,
 /// their ends may be further apart.
 const BLUNT: f64 = 1.2;
 const BLUNT_ON_CLEAN: f64 = 3.0;
+/// A line has a blunt corner with itself when it is this many times as long as the corner is wide.
+const LONG: f64 = 3.0;
 
 /// What an end meets.
 #[derive(Clone, Copy, Debug)]
@@ -73,10 +92,7 @@ impl Finder<'_> {
     fn led(&self, end: &End) -> Option<Contact> {
         let near = self.lines.near(end.point, STEP);
         let (place, point, misfit) = near.into_iter().find(|(place, ..)| place.line != end.line)?;
-        let touch = match self.end_near(place, 0.8 * self.image.line_width) {
-            Some(other) => Touch::End(other),
-            None => Touch::Body(place),
-        };
+        let touch = self.touch(end, place, AT_END * self.image.line_width);
         Some(Contact { end: end.id(), touch, point, misfit })
     }
 
@@ -120,7 +136,8 @@ impl Finder<'_> {
     /// How far the end may be drawn out: as long as there is ink, at most a good half of a line width, or three
     /// where it ran into another line at a small angle.
     fn extension(&self, end: &End) -> f64 {
-        let most = if end.state == EndState::RanIn { 3.0 } else { 0.6 } * self.image.line_width + 0.5;
+        let most = if end.state == EndState::RanIn { DRAWN_OUT_RAN_IN } else { DRAWN_OUT };
+        let most = most * self.image.line_width + DRAWN_OUT_PIXELS;
         let line = &self.lines[end.line];
         if line.points.len() < 2 {
             return 0.0;
@@ -145,20 +162,20 @@ impl Finder<'_> {
     fn judge(&self, end: &End, place: Place, point: Point, heading: Vec2, beyond: f64) -> Option<Contact> {
         let along = self.lines.direction(place);
         let sine = heading.normalize().cross(along).abs();
-        // The smaller the angle, the longer are the inks one; at less than 25 degrees lines merge.
-        let shared = 0.5 * end.width / sine.max(0.42);
-        let sine = sine.max(0.5);
-        let other_width = self.lines.width(place, self.image.line_width);
-        let edge = 0.5 * other_width / sine;
-        let slack = PROTRUSION * self.image.line_width.max(2.0);
+        let shared = 0.5 * end.width / sine.max(SHARED_SINE);
+        let edge = 0.5 * self.lines.width(place, self.image.line_width) / sine.max(EDGE_SINE);
+        let slack = PROTRUSION * self.image.line_width.max(THIN);
         if beyond > edge + slack && end.state != EndState::RanIn {
             return None;
         }
-        let touch = match self.end_near(place, shared + slack) {
-            Some(other) if other != end.id() => Touch::End(other),
-            _ => Touch::Body(place),
-        };
+        let touch = self.touch(end, place, shared + slack);
         Some(Contact { end: end.id(), touch, point, misfit: (beyond - edge).abs() })
+    }
+
+    /// What an end meets at a place: the line's own end, if that is within `reach` pixels along it, or else its body.
+    fn touch(&self, end: &End, place: Place, reach: f64) -> Touch {
+        let other = self.end_near(place, reach).filter(|&other| other != end.id());
+        other.map_or(Touch::Body(place), Touch::End)
     }
 
     /// The end of a line within `reach` pixels along it from a place.
@@ -177,7 +194,8 @@ impl Finder<'_> {
 
     /// A line beside the end that its last stretch does not cross, joined to it by ink.
     fn beside(&self, end: &End) -> Option<Contact> {
-        let reach = if end.state == EndState::RanIn { 0.75 } else { 0.9 } * self.image.line_width.max(1.5);
+        let reach = if end.state == EndState::RanIn { BESIDE_RAN_IN } else { BESIDE };
+        let reach = reach * self.image.line_width.max(THINNEST);
         let from = end.point;
         for (place, foot, distance) in self.lines.near(from, reach) {
             if self.is_own_neighbourhood(end, place) {
@@ -187,10 +205,7 @@ impl Finder<'_> {
             if end.state != EndState::RanIn && !self.image.is_inked(from, foot, end.core) {
                 continue;
             }
-            let touch = match self.end_near(place, 0.8 * self.image.line_width) {
-                Some(other) if other != end.id() => Touch::End(other),
-                _ => Touch::Body(place),
-            };
+            let touch = self.touch(end, place, AT_END * self.image.line_width);
             return Some(Contact { end: end.id(), touch, point: foot, misfit: distance });
         }
         None
@@ -206,11 +221,11 @@ impl Finder<'_> {
         let index = PointIndex::new(free.iter().map(|e| e.point).enumerate());
         let nearest = |end: &End| {
             let widths = self.image.noise.at(end.point).between(BLUNT_ON_CLEAN, BLUNT);
-            let reach = widths * self.image.line_width.max(1.5);
+            let reach = widths * self.image.line_width.max(THINNEST);
             let others = index.by_distance(end.point).map(|near| free[near]);
             let mut others = others.take_while(|o| (o.point - end.point).hypot() <= reach);
             // A short line's own ends are not one another's.
-            let long = self.lines[end.line].points.len() as f64 * STEP > 3.0 * reach;
+            let long = self.lines[end.line].points.len() as f64 * STEP > LONG * reach;
             others.find(|o| o.line != end.line || (o.side != end.side && long))
         };
         let corner = |end: &&End| {
@@ -252,7 +267,7 @@ impl Finder<'_> {
     /// The middle of the stretch that two ends have both covered, if they run along each other.
     fn middle_of_overlap(&self, a: &Contact, on_a: Place, b: &Contact, on_b: Place) -> Option<Point> {
         let (overlap_a, overlap_b) = (self.to_end(on_a, a.end), self.to_end(on_b, b.end));
-        let parallel = self.lines.direction(on_a).dot(self.lines.direction(on_b)).abs() > 0.6;
+        let parallel = self.lines.direction(on_a).dot(self.lines.direction(on_b)).abs() > ALONG_COS;
         if overlap_a.max(overlap_b) >= OVERLAP * self.image.line_width || !parallel {
             return None;
         }
