@@ -22,7 +22,7 @@ const MOST: f64 = 2.5;
 const STEP: f64 = 0.05;
 /// How much a square pixel off the expected deviation weighs against the squares of the shape's errors: thin lines have much
 /// the same shape under any blur.
-const LIKELY: f64 = 0.03;
+const LIKELY: f64 = 0.1;
 /// Of the width that a line measures, the least that it is taken to have had: below, hardly any blur is enough of one.
 const NARROWEST: f64 = 0.5;
 

@@ -39,9 +39,13 @@ pub struct LineImage {
 const SURE_GAP: f64 = 0.15;
 /// Where ink is unsure, the grain of a line that touches another looks like a gap of at most this length, in pixels.
 const UNSURE_GAP: f64 = 0.65;
-/// A line that goes on is whole for this far around each of its points, in pixels. Where ink is unsure, half of that may be
-/// missing: at the end of a blurred line it is.
+/// A line that goes on is whole for this far around each of its points where ink is sure, in pixels, but for this share of the
+/// ink. Where it is unsure only the point itself is looked at, and half may be missing: at the end of a blurred line it is.
 const WHOLE: f64 = 1.0;
+const SURE_LOSS: f64 = 1.0 / 15.0;
+const UNSURE_LOSS: f64 = 0.5;
+/// Distance between samples along a line, in pixels, at most.
+const SPACING: f64 = 0.25;
 /// Bounds of the sizes of a line image, in pixels: far beyond those of any drawing.
 const LEAST_SIZE: f64 = 1e-3;
 const LARGEST_SIZE: f64 = 1e4;
@@ -58,7 +62,7 @@ impl LineImage {
         let longest = noise.between(SURE_GAP * self.scale.max(1.0), UNSURE_GAP);
         let length = (b - a).hypot();
         if noise.grain() == 0.0 {
-            return self.missing(a, b, core) <= longest;
+            return self.missing(a, b, core) * (length + SPACING) <= longest;
         }
         let heading = if length > 1e-9 { (b - a) / length } else { return true };
         let profile = GapProfile::of(self);
@@ -67,15 +71,17 @@ impl LineImage {
 
     /// Whether a line with `core` in its middle goes on through a point.
     pub(crate) fn goes_on(&self, p: Point, heading: Vec2, core: f32) -> bool {
-        let missing = self.missing(p - heading * WHOLE, p + heading * WHOLE, core.min(1.0));
-        missing <= self.noise.at(p).between(SURE_GAP * self.scale.max(1.0), WHOLE)
+        let noise = self.noise.at(p);
+        let around = heading * noise.between(WHOLE, 0.0);
+        let core = noise.between(core.min(1.0).into(), core.into()) as f32;
+        self.missing(p - around, p + around, core) <= noise.between(SURE_LOSS * self.scale.max(1.0), UNSURE_LOSS)
     }
 
-    /// Length of the ink that is missing on the way from one point to another, in pixels.
+    /// Share of the ink that is missing on the way from one point to another.
     fn missing(&self, a: Point, b: Point, core: f32) -> f64 {
-        let (sum, count) = way(a, b)
-            .fold((0.0, 0), |(sum, count), p| (sum + (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0), count + 1));
-        sum * (b - a).hypot() / f64::from((count - 1).max(1))
+        let missing = way(a, b).map(|p| (1.0 - f64::from(self.ink.sample(p) / core)).max(0.0));
+        let (sum, count) = missing.fold((0.0, 0), |(sum, count), missing| (sum + missing, count + 1));
+        sum / f64::from(count)
     }
 
     /// Ink in the middle of a line: where it is unsure the mean across it, since single pixels are mostly grain.
@@ -89,9 +95,9 @@ impl LineImage {
     }
 }
 
-/// Points a quarter of a pixel apart, both ends included.
+/// Points [`SPACING`] apart, both ends included.
 fn way(a: Point, b: Point) -> impl Iterator<Item = Point> {
-    let count = ((b - a).hypot() / 0.25).ceil().max(1.0) as usize;
+    let count = ((b - a).hypot() / SPACING).ceil().max(1.0) as usize;
     (0..=count).map(move |k| a.lerp(b, k as f64 / count as f64))
 }
 

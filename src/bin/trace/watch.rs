@@ -1,6 +1,6 @@
 //! What a trace shows while it runs: pictures of the stages, and their seconds and counts.
 
-use fieldtrace::clean::LineImage;
+use fieldtrace::clean::{LineImage, Noise, NoiseMap};
 use fieldtrace::drawing::Drawing;
 use fieldtrace::error::Result;
 use fieldtrace::field::PolyVectorField;
@@ -30,10 +30,10 @@ impl Stages {
         self.since = Instant::now();
     }
 
-    /// Tells of a pass within a stage.
-    fn pass(&self, Ran { pass, changes, seconds }: &Ran) {
+    /// Tells what was decided.
+    fn tell(&self, what: &str, decided: impl FnOnce() -> String) {
         if self.verbose {
-            eprintln!("{:<12}{seconds:>8.3} s  {}: {changes}", "", pass.name);
+            eprintln!("  {what:<23}{}", decided());
         }
     }
 
@@ -41,6 +41,18 @@ impl Stages {
     fn leave_out(&mut self, time: Duration) {
         self.since += time;
     }
+}
+
+/// How far the ink is trusted, and why.
+fn edges(noise: &NoiseMap) -> String {
+    let Noise { across, along, blur } = noise.mean();
+    let [least, most] = noise.grains();
+    let kind = match (least, most) {
+        (_, 0.0) => "sure, as a renderer's".into(),
+        (1.0, _) => "unsure, as on paper".into(),
+        _ => format!("unsure in part, {:.0} to {:.0} %", 100.0 * least, 100.0 * most),
+    };
+    format!("{kind}: middles to {across:.2} pixels, ink to {:.0} %, blur {blur:.1} pixels", 100.0 * along)
 }
 
 /// An observer that tells and draws what each stage made.
@@ -73,6 +85,7 @@ impl Observer for Watch<'_> {
             let (width, scale) = (image.line_width, image.scale);
             format!("{ink} ink pixels, lines {width:.1} wide{broad}, scale {scale:.2}, {solids} solids")
         });
+        self.stages.tell("edges", || edges(&image.noise));
         self.draw(|debug| debug.on_line_image(image))
     }
 
@@ -94,12 +107,12 @@ impl Observer for Watch<'_> {
     }
 
     fn on_lines(&mut self, image: &LineImage, ran: &Ran, lines: &[Line]) -> Result<()> {
-        self.stages.pass(ran);
+        self.stages.tell(ran.pass.name, || format!("{} changed in {:.3} s", ran.changes, ran.seconds));
         self.draw(|debug| debug.on_lines(image, ran, lines))
     }
 
     fn on_finish(&mut self, image: &LineImage, ran: &Ran, graph: &StrokeGraph) -> Result<()> {
-        self.stages.pass(ran);
+        self.stages.tell(ran.pass.name, || format!("{} changed in {:.3} s", ran.changes, ran.seconds));
         self.draw(|debug| debug.on_finish(image, ran, graph))
     }
 
