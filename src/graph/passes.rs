@@ -2,6 +2,29 @@
 //!
 //! A pass is a row of [`REPAIRS`], which work on lines, or of [`FINISHES`], which work on the graph. Between the two, ends
 //! are resolved and the graph is assembled; that is no pass, for nothing comes out without it.
+//!
+//! # What each is worth
+//!
+//! By how much the mean figures of forty drawings change when it is left out, in thousandths, as clean renders, as scans, and
+//! as scans on white paper (`cargo bench --bench passes`); in how many of them it did something; and the share of the cases of a
+//! sweep that keep its rule, with it, at least, and without.
+//!
+//! | pass | drawings | junction_f1 | integrity | purity | sweep |
+//! |---|---|---|---|---|---|
+//! | dot | 0, 0, 0 | | | | dots 1.000 to 0 |
+//! | overlap | 10, 16, 13 | -5.0, -3.8, +2.1 | 0, -3.0, +2.5 | 0, +6.1, +0.9 | openings of corners 0.933 to 0.929 |
+//! | gap before a body | 0, 16, 16 | 0, -30.0, -34.8 | 0, +0.6, +0.1 | 0, -1.1, -0.8 | gaps on pencil scans 0.986 to 0.456 |
+//! | tangency | 0, 0, 0 | | | | shallow crossings 0.867 to 0.822 |
+//! | cusp | 0, 1, 0 | 0, 0, 0 | 0, 0, 0 | 0, 0, 0 | humps of a coil 0.711 to 0.022 |
+//! | fork | 3, 5, 4 | -11.1, -4.7, -0.5 | -2.4, +0.5, +0.1 | +1.5, -0.4, -0.3 | twin arcs from a line 0.583 to 0.417 |
+//! | colour change | 0, 0, 0 | | | | lines that go on in another colour 0.928 to 0 |
+//! | tangent end | 7, 6, 5 | -12.0, -10.3, -13.1 | -1.4, -0.3, -0.6 | +0.1, 0, -5.7 | tangential merges 0.900 to 0.883 |
+//! | swapped arms | 0, 0, 0 | | | | three through a point 0.973 to 0.867 |
+//! | wrong arm | 3, 6, 8 | -2.8, -0.2, -0.5 | 0, -3.2, -1.0 | -10.0, -12.5, -4.3 | corners that share their vertex 0.944 to 0.009 |
+//! | colour | 0, 0, 0 | | | | crossings of two colours 0.919 to 0 |
+//! | taper | 0, 0, 0 | | | | tapers 0.989 to 0.615 |
+//! | gap | 0, 0, 3 | 0, 0, 0 | 0, 0, 0 | 0, 0, +0.2 | broken pencil lines 1.000 to 0; endpoint_f1 0, 0, -34.7 |
+//! | confidence | 19, 21, 20 | | | | none: it tells of junctions and changes no line |
 
 use super::lines::Lines;
 use super::pens::Pens;

@@ -133,8 +133,8 @@ mod tests {
             for s0 in [-3.0, 0.0, 2.2] {
                 let found = samples(|s| radius - (radius.powi(2) - (s - s0).max(0.0).powi(2)).sqrt());
                 let leave = leave(&found, 0.0).expect("a touch");
-                assert!((leave.s0 - s0).abs() < 1.0 && leave.slope == 0.0, "{radius} {s0}: {leave:?}");
-                assert!((leave.curvature * radius - 1.0).abs() < 0.1, "{radius} {s0}: {leave:?}");
+                assert!((leave.s0 - s0).abs() < 1.0 && leave.slope < 0.05, "{radius} {s0}: {leave:?}");
+                assert!((leave.curvature * radius - 1.0).abs() < 0.15, "{radius} {s0}: {leave:?}");
             }
         }
     }
