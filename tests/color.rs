@@ -140,7 +140,7 @@ fn light_lines_on_a_dark_ground_keep_their_colours() {
         ];
         let result = trace(&color_scan(&sheet(96, 96, strokes), ground));
         let colors: Vec<Color> = result.strokes.iter().map(|s| s.color).collect();
-        // White chalk is the grey pen.
+        // White chalk is grey at its darkest, as on white paper.
         let black = colors.iter().filter(|&&c| c == Color::BLACK).count();
         ensure(colors.len() == 2 && black == 1, || format!("{colors:?}"))?;
         ensure(colors.iter().any(|&c| off(c, ink) < 30), || format!("{colors:?} for {ink:?}"))

@@ -2,31 +2,35 @@
 //!
 //! Of the light of a channel, paper keeps its level and ink takes a share: the absorbance, which grows evenly with how
 //! much of the pixel is inked. Its largest channel is how strong the ink is, whatever its colour: yellow ink takes all
-//! of the blue. Its hue is the ink's own even on the grey edge of a line. So inks are grouped by hue, black and grey
-//! being one group, and each group is measured against its own full strength: a light blue line is as much ink as a
-//! black one beside it.
+//! of the blue. So inks are grouped by hue, black and grey being one group, and each group is measured against its own
+//! full strength: a light blue line is as much ink as a black one beside it.
+//!
+//! A pixel's hue need not be its ink's: sub-pixel rendering, channels that are out of register, a lens and the coarse
+//! chroma of JPEG give grey lines flanks of opposite hues, and coloured ones pale middles and a halo. All of them move ink
+//! across the line and take none away. So hues are measured by the sum of the ink across a line ([`across`]), and what
+//! lies beside the middle of a line has the hue of that middle.
 
+use super::across::{Cores, is_known};
 use super::paper;
-use super::smooth;
 use crate::raster::Raster;
 use image::RgbImage;
 use kurbo::Vec2;
 use std::f64::consts::TAU;
 
 /// Ink of less saturation than this, as the share of its strength by which channels differ, is grey.
-const LEAST_SATURATION: f32 = 0.3;
-/// Channels that differ by less than this say nothing of the hue: rounding, and a scanner's chroma noise.
-const LEAST_CHROMA: f32 = 0.03;
-/// The chroma of ink that tells of a hue of its own.
-const SURE_CHROMA: f32 = 0.12;
+const LEAST_SATURATION: f64 = 0.3;
+/// Ink of less strength than this, as a share of full ink, tells nothing of its hue.
+const LEAST_INK: f32 = 0.12;
+/// Channels of ink that differ by less than this, as a share of full ink, do not tell that it has a hue of its own.
+const LEAST_CHROMA: f64 = 0.15;
 /// Hues are counted in steps of 5 degrees, and those within 25 degrees of a peak are one ink.
 const BINS: usize = 72;
 const SPREAD: usize = 5;
 /// A hue is an ink's when it has this many pixels, and this share of all ink.
 const LEAST_PIXELS: f64 = 30.0;
 const LEAST_SHARE: f64 = 0.005;
-/// Hues are looked at through a Gaussian of this many pixels, so that a lone pixel's noise does not count.
-const BLUR: f32 = 0.8;
+/// Ink of less than this share of the strongest ink's strength is printed on the paper, such as its squares.
+const FAINTEST: f32 = 0.33;
 
 /// A page that is drawn in colour.
 pub(super) struct ColorPage {
@@ -69,98 +73,138 @@ impl ColorPage {
     }
 }
 
-/// Tells inks apart; `None` where all ink is grey. On a dark ground light is ink.
-pub(super) fn separate(rgb: &RgbImage, dark_ground: bool) -> Option<ColorPage> {
-    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
-    let absorbance = [0, 1, 2].map(|channel| {
-        let light = Raster::from_fn(width, height, |x, y| {
-            let value = f32::from(rgb.get_pixel(x as u32, y as u32)[channel]) / 255.0;
-            if dark_ground { 1.0 - value } else { value }
-        });
-        paper::divide(&light, &paper::paper_level(&light))
-    });
+/// Tells inks apart; `None` where all ink is grey. `grey` is the ink as it is without colour. On a dark ground light is
+/// ink.
+pub(super) fn separate(rgb: &RgbImage, grey: &Raster<f32>, dark_ground: bool) -> Option<ColorPage> {
+    let absorbance = absorbance(rgb, dark_ground);
+    let mut cores = Cores::of(&absorbance, LEAST_INK);
+    let (width, height) = grey.size();
     let at = |x: usize, y: usize| [0, 1, 2].map(|c| absorbance[c][(x, y)]);
-    let strength = Raster::from_fn(width, height, |x, y| at(x, y).into_iter().fold(0.0, f32::max));
-    // The colour's plane seen along its grey axis: opponents of red, and of green against blue.
-    let red = Raster::from_fn(width, height, |x, y| at(x, y)[0] - 0.5 * (at(x, y)[1] + at(x, y)[2]));
-    let green = Raster::from_fn(width, height, |x, y| 0.75f32.sqrt() * (at(x, y)[1] - at(x, y)[2]));
-    let hues = Hues { red: smooth(red, BLUR), green: smooth(green, BLUR), strength: smooth(strength.clone(), BLUR) };
-    let peaks = hues.peaks();
-    if peaks.is_empty() {
+    let hues = Hues::of(&cores, |x, y| at(x, y).into_iter().fold(0.0, f32::max));
+    if hues.peaks.is_empty() {
         return None;
     }
-    let group = Raster::from_fn(width, height, |x, y| hues.group(x, y, &peaks));
-    let colors = Raster::from_fn(width, height, |x, y| {
-        at(x, y).map(|a| (255.0 * if dark_ground { a } else { 1.0 - a }).round() as u8)
+    cores.spread();
+    let group = cores.tone.mapped(0, |tone| hues.group(tone));
+    let strength = Raster::from_rows(width, height, 0.0, |y, row| {
+        row.iter_mut().enumerate().for_each(|(x, strength)| {
+            *strength = if group[(x, y)] == 0 { grey[(x, y)] } else { amount(at(x, y), cores.tone[(x, y)]) };
+        });
     });
-    let has_grey = has_grey(&group, &strength);
-    Some(ColorPage { strength, colors, group, groups: peaks.len() as u8 + 1, has_grey })
+    let byte = |share: f32| (255.0 * share).round() as u8;
+    let colors = Raster::from_rows(width, height, [255; 3], |y, row| {
+        row.iter_mut().enumerate().for_each(|(x, color)| {
+            let (strength, tone) = (strength[(x, y)], cores.tone[(x, y)]);
+            *color = match (group[(x, y)], dark_ground) {
+                (0, _) => [byte(1.0 - strength); 3],
+                (_, true) => tone.map(|channel| byte(strength * channel)),
+                (_, false) => tone.map(|channel| byte(1.0 - strength * channel)),
+            };
+        });
+    });
+    Some(ColorPage { strength, colors, group, groups: hues.groups() as u8, has_grey: hues.has_grey })
 }
 
-/// Whether enough grey ink has grey ink all around it: the grey edges of coloured lines have none.
-fn has_grey(group: &Raster<u8>, strength: &Raster<f32>) -> bool {
-    let is_grey_ink =
-        |x: i64, y: i64| group.get(x, y).is_none_or(|g| g == 0) && strength.get(x, y).is_none_or(|s| s > SURE_CHROMA);
-    let (width, height) = group.size();
-    let pixels = (0..height as i64).flat_map(|y| (0..width as i64).map(move |x| (x, y)));
-    let inner = pixels.filter(|&(x, y)| {
-        is_grey_ink(x, y) && [(1, 0), (0, 1), (1, 1)].iter().all(|&(dx, dy)| is_grey_ink(x + dx, y + dy))
-    });
-    let ink = strength.data().iter().filter(|&&s| s > SURE_CHROMA).count();
-    inner.count() as f64 >= LEAST_PIXELS.max(LEAST_SHARE * ink as f64)
+/// How much ink of a tone makes an absorbance: the least squares.
+fn amount(absorbance: [f32; 3], tone: [f32; 3]) -> f32 {
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    (dot(absorbance, tone) / dot(tone, tone)).clamp(0.0, 1.0)
 }
 
+/// The light that the paper's level has lost, of each channel.
+fn absorbance(rgb: &RgbImage, dark_ground: bool) -> [Raster<f32>; 3] {
+    let light = [0, 1, 2].map(|channel| {
+        Raster::from_rows(rgb.width() as usize, rgb.height() as usize, 0.0, |y, row| {
+            row.iter_mut().enumerate().for_each(|(x, light)| {
+                let value = f32::from(rgb.get_pixel(x as u32, y as u32)[channel]) / 255.0;
+                *light = if dark_ground { 1.0 - value } else { value };
+            });
+        })
+    });
+    let papers = paper::paper_levels(light.each_ref());
+    [0, 1, 2].map(|c| paper::divide(&light[c], &papers[c]))
+}
+
+/// A tone seen along the grey axis of the space of colours: opponents of red, and of green against blue.
+fn opponents(tone: [f32; 3]) -> Vec2 {
+    let [r, g, b] = tone.map(f64::from);
+    Vec2::new(r - 0.5 * (g + b), 0.75f64.sqrt() * (g - b))
+}
+
+/// The bin of the hue of ink of a tone; `None` where it is grey.
+fn hue(tone: [f32; 3]) -> Option<usize> {
+    let v = opponents(tone);
+    (v.hypot() > LEAST_SATURATION).then(|| ((v.atan2() / TAU).rem_euclid(1.0) * BINS as f64) as usize % BINS)
+}
+
+/// The hues of a page's inks.
 struct Hues {
-    red: Raster<f32>,
-    green: Raster<f32>,
-    strength: Raster<f32>,
+    /// The most common first, and the group of each: 0 where the ink is too faint to be drawn with.
+    peaks: Vec<(usize, u8)>,
+    /// Whether there is black or grey ink.
+    has_grey: bool,
 }
 
 impl Hues {
-    /// Chroma, and the bin of the hue of ink that is not grey.
-    fn hue(&self, x: usize, y: usize) -> (f32, Option<usize>) {
-        let v = Vec2::new(f64::from(self.red[(x, y)]), f64::from(self.green[(x, y)]));
-        let chroma = v.hypot() as f32;
-        let colored = chroma > LEAST_CHROMA && chroma > LEAST_SATURATION * self.strength[(x, y)];
-        let bin = || ((v.atan2() / TAU).rem_euclid(1.0) * BINS as f64) as usize % BINS;
-        (chroma, colored.then(bin))
-    }
-
-    /// The hues of the page's inks, the most common first.
-    fn peaks(&self) -> Vec<usize> {
-        let (mut counts, mut ink) = ([0.0f64; BINS], 0.0);
-        let (width, height) = self.strength.size();
-        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-            let (chroma, bin) = self.hue(x, y);
-            ink += f64::from(u8::from(self.strength[(x, y)] > SURE_CHROMA));
-            if let Some(bin) = bin.filter(|_| chroma > SURE_CHROMA) {
-                counts[bin] += 1.0;
+    /// Counts the tones of the middles of lines of some strength.
+    fn of(cores: &Cores, strength: impl Fn(usize, usize) -> f32) -> Self {
+        let (mut of_bins, mut grey, mut ink) = (vec![Vec::new(); BINS], Vec::new(), 0);
+        for y in 0..cores.tone.height() {
+            for (x, &tone) in cores.tone.row(y).iter().enumerate().filter(|(_, tone)| is_known(**tone)) {
+                let strength = strength(x, y);
+                ink += 1;
+                let Some(bin) = hue(tone) else {
+                    grey.push(strength);
+                    continue;
+                };
+                let saturation = opponents(cores.around(x, y)).hypot();
+                if saturation > LEAST_SATURATION && saturation * f64::from(strength) > LEAST_CHROMA {
+                    of_bins[bin].push(strength);
+                }
             }
         }
-        let mut peaks = Vec::new();
+        let least = LEAST_PIXELS.max(LEAST_SHARE * f64::from(ink)) as usize;
+        let has_grey = grey.len() >= least;
+        let mut found: Vec<(usize, f32)> = Vec::new();
         loop {
-            let around = |b: usize, reach: usize| -> f64 {
-                (0..=2 * reach).map(|k| counts[(b + BINS + k - reach) % BINS]).sum()
-            };
-            let top = (0..BINS).max_by(|&a, &b| around(a, 1).total_cmp(&around(b, 1)).then(b.cmp(&a))).unwrap_or(0);
-            if around(top, SPREAD) < LEAST_PIXELS.max(LEAST_SHARE * ink) {
-                return peaks;
+            let around = |b: usize, reach: usize| (0..=2 * reach).map(move |k| (b + BINS + k - reach) % BINS);
+            let count = |b: usize, reach: usize| around(b, reach).map(|k| of_bins[k].len()).sum::<usize>();
+            let top = (0..BINS).max_by_key(|&b| (count(b, 1), BINS - b)).unwrap_or(0);
+            if count(top, SPREAD) < least {
+                break;
             }
-            peaks.push(top);
-            (0..=2 * SPREAD).for_each(|k| counts[(top + BINS + k - SPREAD) % BINS] = 0.0);
+            let own: Vec<f32> = around(top, SPREAD).flat_map(|k| std::mem::take(&mut of_bins[k])).collect();
+            found.push((top, full(own)));
         }
+        let strongest = found.iter().map(|f| f.1).fold(if has_grey { full(grey) } else { 0.0 }, f32::max);
+        let mut groups = 0;
+        let group = |(top, strength): (usize, f32)| {
+            let is_pen = strength >= FAINTEST * strongest;
+            groups += u8::from(is_pen);
+            (top, if is_pen { groups } else { 0 })
+        };
+        let peaks: Vec<(usize, u8)> = found.into_iter().map(group).collect();
+        let any = peaks.iter().any(|peak| peak.1 > 0);
+        Self { peaks: if any { peaks } else { Vec::new() }, has_grey }
     }
 
-    /// The group of a pixel: the nearest of the hues, or 0 for grey.
-    fn group(&self, x: usize, y: usize, peaks: &[usize]) -> u8 {
-        let Some(bin) = self.hue(x, y).1 else { return 0 };
-        let apart = |p: usize| {
-            let d = p.abs_diff(bin);
-            d.min(BINS - d)
-        };
-        let nearest = (0..peaks.len()).min_by_key(|&i| apart(peaks[i]));
-        nearest.map_or(0, |i| i as u8 + 1)
+    /// The group of ink of a tone: that of the nearest of the hues, or 0 for grey.
+    fn group(&self, tone: [f32; 3]) -> u8 {
+        let Some(bin) = hue(tone) else { return 0 };
+        let apart = |peak: usize| peak.abs_diff(bin).min(BINS - peak.abs_diff(bin));
+        self.peaks.iter().min_by_key(|peak| apart(peak.0)).map_or(0, |peak| peak.1)
     }
+
+    /// The number of groups, grey included.
+    fn groups(&self) -> usize {
+        1 + self.peaks.iter().filter(|peak| peak.1 > 0).count()
+    }
+}
+
+/// The strength of an ink where no blur thins it: an upper quantile.
+fn full(mut values: Vec<f32>) -> f32 {
+    let k = values.len() * 9 / 10;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(k, f32::total_cmp).1 }
 }
 
 #[cfg(test)]
@@ -181,11 +225,18 @@ mod tests {
         })
     }
 
+    fn separated(rgb: &RgbImage) -> Option<ColorPage> {
+        let light = Raster::from_fn(rgb.width() as usize, rgb.height() as usize, |x, y| {
+            rgb.get_pixel(x as u32, y as u32).0.map(f32::from).iter().sum::<f32>() / 765.0
+        });
+        separate(rgb, &paper::divide(&light, &paper::paper_level(&light)), false)
+    }
+
     #[test]
     fn each_hue_is_a_group_and_grey_is_none() {
         let inks = [[0.0; 3], [1.0, 0.0, 0.0], [0.1, 0.2, 0.9], [1.0, 0.95, 0.1], [0.7, 0.8, 1.0], [0.5; 3]];
         for paper in [[1.0; 3], [0.96, 0.93, 0.85]] {
-            let page = separate(&bars(&inks, paper), false).unwrap();
+            let page = separated(&bars(&inks, paper)).unwrap();
             // Both blues are one group; their strengths are told apart on the way.
             assert_eq!(page.groups, 4);
             let group = |bar: usize, x: usize| page.group[(40 * bar + x, 30)];
@@ -202,7 +253,7 @@ mod tests {
     #[test]
     fn a_tinted_page_of_grey_ink_is_not_in_colour() {
         for paper in [[1.0, 0.97, 0.88], [0.8, 0.85, 0.9]] {
-            assert!(separate(&bars(&[[0.1; 3], [0.5, 0.48, 0.47]], paper), false).is_none());
+            assert!(separated(&bars(&[[0.1; 3], [0.5, 0.48, 0.47]], paper)).is_none());
         }
     }
 }

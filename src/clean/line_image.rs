@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct LineImage {
     /// How much of each pixel is inked: 0 on paper, 1 in the middle of a typical line; anti-aliased edges are
-    /// kept. On a scan, the darkest ink has up to 2.
+    /// kept. On a scan, the darkest ink has up to 2. Of solid regions it has only the rim.
     pub ink: Raster<f32>,
     /// The pixels that count as ink of lines; solid regions are not among them.
     pub mask: Mask,
@@ -28,11 +28,29 @@ pub struct LineImage {
     pub blur: f64,
     /// Regions too wide to be lines, in pixels of this raster.
     pub solids: Vec<Fill>,
+    /// The pixels of these regions.
+    pub solid: Mask,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
-    /// On a page in colour, the colour of each pixel *of the scan* with the paper's own taken off; `None` where all
-    /// ink is grey.
+    /// The colour of each pixel *of the scan* with the paper's own taken off, and on a dark ground grey for dark ink on
+    /// white; `None` is black ink.
     pub colors: Option<Raster<[u8; 3]>>,
+    /// What was decided about the page.
+    pub decisions: Decisions,
+}
+
+/// What was decided about a page, so that a user knows which option to move.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Decisions {
+    /// Whether light was taken for ink.
+    pub inverted: bool,
+    /// Standard deviation of the paper's grain as a share of full ink; 0 where it is flat.
+    pub grain: f64,
+    /// The darkness from which a pixel is ink, as [`crate::options::Threshold::Fixed`] takes it; `None` where that depends on
+    /// the place or on the ink.
+    pub threshold: Option<f64>,
+    /// How many inks have a hue of their own.
+    pub hues: usize,
 }
 
 /// Where lines that touch are sure, they show no gap longer than this, in pixels of the scan.
@@ -137,7 +155,7 @@ impl LineImage {
     /// [`Error::Broken`].
     pub(crate) fn validate(&self) -> Result<()> {
         let broken = |reason: String| Err(Error::Broken { stage: "clean", reason });
-        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size())] {
+        for (what, size) in [("mask", self.mask.size()), ("depth", self.depth.size()), ("solid", self.solid.size())] {
             if size != self.ink.size() {
                 return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
             }

@@ -6,31 +6,48 @@ use crate::raster::Raster;
 /// Side of the cells in which paper is measured, in pixels: several line widths, so that most of a cell is paper.
 const CELL: usize = 16;
 /// Darker than this share of the page's lightest paper is not paper but a solid region.
-const SOLID_SHARE: f32 = 0.55;
+const SOLID_SHARE: f32 = 0.6;
 
 /// Paper lightness on a coarse grid of one sample per [`CELL`] x [`CELL`] pixels.
 pub(super) struct Paper(Raster<f32>);
 
 /// Measures the paper: an upper quantile per cell, solid regions bridged, smoothed.
 pub(super) fn paper_level(light: &Raster<f32>) -> Paper {
-    let (columns, rows) = (light.width().div_ceil(CELL), light.height().div_ceil(CELL));
-    let cells = Raster::from_rows(columns, rows, 0.0, |cy, row| {
+    let [paper] = paper_levels([light]);
+    paper
+}
+
+/// Measures the paper in several channels: a region that is solid in one of them is paper in none.
+pub(super) fn paper_levels<const N: usize>(channels: [&Raster<f32>; N]) -> [Paper; N] {
+    let cells = channels.map(cell_levels);
+    let lightest = cells.each_ref().map(|cells| {
+        let mut sorted = cells.data().to_vec();
+        sorted.sort_by(f32::total_cmp);
+        sorted[(sorted.len() - 1) * 9 / 10].max(1e-3)
+    });
+    let (columns, rows) = cells[0].size();
+    let is_paper = Raster::from_fn(columns, rows, |x, y| {
+        cells.iter().zip(lightest).all(|(cells, lightest)| cells[(x, y)] > SOLID_SHARE * lightest)
+    });
+    // Normalised convolution: cells that are not paper take their neighbours' level.
+    let weight = smooth(is_paper.map(|is_paper| if is_paper { 1.0 } else { 1e-4 }), 1.2);
+    std::array::from_fn(|c| {
+        let weighted = smooth(
+            Raster::from_fn(columns, rows, |x, y| if is_paper[(x, y)] { cells[c][(x, y)] } else { lightest[c] * 1e-4 }),
+            1.2,
+        );
+        Paper(Raster::from_fn(columns, rows, |x, y| weighted[(x, y)] / weight[(x, y)]))
+    })
+}
+
+/// The upper quantile of each cell.
+fn cell_levels(light: &Raster<f32>) -> Raster<f32> {
+    Raster::from_rows(light.width().div_ceil(CELL), light.height().div_ceil(CELL), 0.0, |cy, row| {
         let mut values = Vec::new();
         row.iter_mut()
             .enumerate()
             .for_each(|(cx, cell)| *cell = cell_quantile(light, cx * CELL, cy * CELL, &mut values));
-    });
-    let mut sorted = cells.data().to_vec();
-    sorted.sort_by(f32::total_cmp);
-    let lightest = sorted[(sorted.len() - 1) * 9 / 10].max(1e-3);
-    // Normalised convolution: cells that are not paper take their neighbours' level.
-    let weight = cells.map(|c| if c > SOLID_SHARE * lightest { 1.0f32 } else { 1e-4 });
-    let weighted = Raster::from_fn(columns, rows, |x, y| {
-        let level = if cells[(x, y)] > SOLID_SHARE * lightest { cells[(x, y)] } else { lightest };
-        level * weight[(x, y)]
-    });
-    let (weighted, weight) = (smooth(weighted, 1.2), smooth(weight, 1.2));
-    Paper(Raster::from_fn(columns, rows, |x, y| weighted[(x, y)] / weight[(x, y)]))
+    })
 }
 
 /// Upper quantile of one cell, taken over twice the cell so that neighbours agree. `values` is room to work in.

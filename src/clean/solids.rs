@@ -33,6 +33,9 @@ const BROADEST: f64 = 5.0;
 /// Ink beside a solid region that is less than this many squares of the line width is its corner, not a line.
 const CORNER: f64 = 4.0;
 
+/// How deep the rim of a solid region is, whose ink lines run into, in pixels: an end is looked at within a pixel of it.
+const RIM: f32 = 2.0;
+
 /// Half the width, in pixels, from which ink is not a line of a width.
 pub(super) fn half_width_of_wide(line_width: f64) -> f64 {
     FACTOR * 0.5 * line_width + MARGIN
@@ -60,11 +63,11 @@ pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64) 
     Some(broad)
 }
 
-/// Takes the solid regions out of the mask and returns their outlines.
-pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line_width: f64) -> Vec<Fill> {
+/// Takes the solid regions out of the mask, and their ink with them: it is no line's. Their pixels and their outlines.
+pub(super) fn take(mask: &mut Mask, ink: &mut Raster<f32>, depth: &Raster<f32>, line_width: f64) -> (Mask, Vec<Fill>) {
     let radius = half_width_of_wide(line_width);
     if !is_deeper(depth, radius) {
-        return Vec::new();
+        return (Raster::zeroed(mask.width(), mask.height()), Vec::new());
     }
     let (_, labels, count) = regions(mask, depth, radius, line_width);
     let solid = solid_labels(&labels, count, depth, line_width);
@@ -74,8 +77,17 @@ pub(super) fn take(mask: &mut Mask, ink: &Raster<f32>, depth: &Raster<f32>, line
         Fill { outline, color: Color::BLACK }
     });
     let fills = fills.collect();
-    labels.iter().zip(mask.data_mut()).for_each(|(label, ink)| *ink &= !solid[*label as usize]);
-    fills
+    let region =
+        Raster::from_fn(mask.width(), mask.height(), |x, y| solid[labels.get_pixel(x as u32, y as u32)[0] as usize]);
+    mask.data_mut().iter_mut().zip(region.data()).for_each(|(ink, solid)| *ink &= !solid);
+    take_ink(ink, &region);
+    (region, fills)
+}
+
+/// Takes the ink of a region but for its rim, on which lines end.
+fn take_ink(ink: &mut Raster<f32>, region: &Mask) {
+    let depth = distance(region);
+    ink.data_mut().iter_mut().zip(depth.data()).filter(|(_, d)| **d > RIM).for_each(|(ink, _)| *ink = 0.0);
 }
 
 /// Whether the ink is deeper than a radius somewhere.
@@ -214,7 +226,7 @@ mod tests {
     #[test]
     fn a_disc_beside_a_line_is_a_fill_of_its_area() {
         let centre = Point::new(60.3, 49.8);
-        let ink = Raster::from_fn(160, 100, |x, y| {
+        let mut ink = Raster::from_fn(160, 100, |x, y| {
             let p = Point::new(x as f64 + 0.5, y as f64 + 0.5);
             let disc = (20.0 - (p - centre).hypot() + 0.5).clamp(0.0, 1.0);
             let line = (1.5 - (p.x - 130.0).abs() + 0.5).clamp(0.0, 1.0);
@@ -222,12 +234,14 @@ mod tests {
         });
         let mut mask = ink.map(|i| i > 0.5);
         let depth = distance(&mask);
-        let fills = take(&mut mask, &ink, &depth, 3.0);
+        let (solid, fills) = take(&mut mask, &mut ink, &depth, 3.0);
         assert_eq!(fills.len(), 1);
         let area = fills[0].outline.area().abs();
         assert!((area / (std::f64::consts::PI * 400.0) - 1.0).abs() < 0.01, "{area}");
         let middle = fills[0].outline.bounding_box().center();
         assert!((middle - centre).hypot() < 0.2, "{middle:?}");
         assert!(mask[(130, 50)] && !mask[(60, 50)]);
+        assert!(!solid[(130, 50)] && solid[(60, 50)]);
+        assert!(ink[(130, 50)] > 0.9 && (44..77).all(|x| ink[(x, 50)] == 0.0) && ink[(41, 50)] > 0.9);
     }
 }

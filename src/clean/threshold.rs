@@ -91,45 +91,46 @@ pub(super) fn mask(ink: &Raster<f32>, noise: &NoiseMap) -> Mask {
     })
 }
 
+/// Ink that was told from paper.
+pub(super) struct Told {
+    /// The ink, a line's typical core being 1.
+    pub ink: Raster<f32>,
+    pub mask: Mask,
+    /// The darkness from which a pixel is in the mask, where it is one for the page.
+    pub threshold: Option<f64>,
+}
+
 /// Scales the ink so that a line's typical core is 1, the darkest more, and tells ink from paper.
 ///
 /// One level serves the whole page when its lines are about equally dark; otherwise each place is measured
 /// against the darkest ink near it, so that light pencil lines hold beside dark ones. On a clean render what is far
 /// lighter than the lines is no line, unless its ink may come in `shades`.
-pub(super) fn binarise(
-    ink: Raster<f32>,
-    paper: Paper,
-    noise: &NoiseMap,
-    threshold: Threshold,
-    shades: bool,
-) -> (Raster<f32>, Mask) {
+pub(super) fn binarise(ink: &Raster<f32>, paper: Paper, noise: &NoiseMap, threshold: Threshold, shades: bool) -> Told {
     if let Threshold::Fixed(t) = threshold {
         let mask = ink.mapped(false, |i| f64::from(i) > t);
-        return (scaled(ink, (2.0 * t) as f32), mask);
+        return Told { ink: scaled(ink, (2.0 * t) as f32), mask, threshold: Some(t) };
     }
-    let floor = floor(&ink, paper.grain);
-    let Some((otsu, core)) = global_levels(&ink, floor) else {
+    let floor = floor(ink, paper.grain);
+    let Some((otsu, core)) = global_levels(ink, floor) else {
         let mask = Raster::filled(ink.width(), ink.height(), false);
-        return (ink, mask);
+        return Told { ink: ink.clone(), mask, threshold: Some(floor.into()) };
     };
+    let level = level(noise.mean());
     if noise.mean().grain() < 0.5 && core > 0.8 && !shades {
-        let mask = mask(&ink, noise);
-        return (ink, mask);
+        return Told { ink: ink.clone(), mask: mask(ink, noise), threshold: Some(level.into()) };
     }
     // At the level of the mask, ink still stands out.
-    let level = level(noise.mean());
     let least = floor / level;
     let core = core.max(least);
-    let nearby = nearby_core(&ink, (LIGHTEST * otsu).max(least));
-    let ink = if is_even(&ink, &nearby, otsu, core) && !has_light_lines(&ink, &nearby, level * otsu, core) {
-        scaled(ink, core)
-    } else {
-        Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
-            row.iter_mut().zip(ink.row(y)).zip(nearby.row(y)).for_each(|((to, &i), &core)| *to = i / core);
-        })
-    };
-    let mask = mask(&ink, noise);
-    (ink, mask)
+    let nearby = nearby_core(ink, (LIGHTEST * otsu).max(least));
+    if is_even(ink, &nearby, otsu, core) && !has_light_lines(ink, &nearby, level * otsu, core) {
+        let ink = scaled(ink, core);
+        return Told { mask: mask(&ink, noise), ink, threshold: Some((level * core).into()) };
+    }
+    let ink = Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
+        row.iter_mut().zip(ink.row(y)).zip(nearby.row(y)).for_each(|((to, &i), &core)| *to = i / core);
+    });
+    Told { mask: mask(&ink, noise), ink, threshold: None }
 }
 
 /// The least ink that stands out from the paper.
@@ -155,7 +156,7 @@ fn in_bytes(ink: &Raster<f32>) -> GrayImage {
     ink.mapped(0, |i| (i * 255.0 + 0.5) as u8).into_image()
 }
 
-fn scaled(ink: Raster<f32>, core: f32) -> Raster<f32> {
+fn scaled(ink: &Raster<f32>, core: f32) -> Raster<f32> {
     ink.mapped(0.0, |i| i / core)
 }
 

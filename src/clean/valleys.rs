@@ -7,19 +7,28 @@
 
 use super::noise::NoiseMap;
 use super::threshold::level;
-use crate::raster::{Mask, Raster};
+use crate::raster::{Mask, Raster, floor};
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Directions tried across a valley.
-const DIRECTIONS: usize = 16;
+/// The edges around a point have a common direction where this share of their gradients' squares agree on it, in so many
+/// places to each side; empirical, guarded by the tests below.
+const COHERENT: f64 = 0.6;
+const EDGES: i64 = 4;
+/// A valley is looked for in the nearest multiple of so many radians, and in so many to either side.
+const TURN: f64 = PI / 16.0;
+const TURNS: i32 = 2;
 /// How far along a valley its profile is averaged, to either side, in line widths; and the least of it in pixels.
 const ALONG: f64 = 1.5;
 const LEAST_ALONG: f64 = 4.0;
 /// Distance between samples along and across, in pixels.
 const STEP: f64 = 1.0;
 const FINE: f64 = 0.5;
+/// So many samples along, and across a line's width, are enough: those of wider lines lie further apart, so that no pixel
+/// costs more than at a width of 5 and 14 pixels.
+const MOST_ALONG: f64 = 8.0;
+const FINEST: f64 = 28.0;
 /// How far from the bottom of its valley a pixel lies at most, in line widths.
 const SLOPE: f64 = 0.25;
 /// Distance of a ridge from the valley's bottom: at least, in line widths; at most, in line widths and in pixels of paper.
@@ -96,12 +105,13 @@ fn is_candidate(ink: &Raster<f32>, x: usize, y: usize, line_width: f64) -> bool 
 ///
 /// It goes on to both sides of the point: between lines that part, or in the corner of two that meet, it does not.
 fn deepest(ink: &Raster<f32>, p: Point, line_width: f64) -> Option<Valley> {
-    let across = |k: usize| {
-        let normal = Vec2::from_angle(PI * k as f64 / DIRECTIONS as f64);
+    let straight_across = (normal(ink, p, line_width)?.atan2() / TURN).round();
+    let across = |turn: i32| {
+        let normal = Vec2::from_angle(TURN * (straight_across + f64::from(turn)));
         if !is_lower(ink, p, normal, line_width) {
             return None;
         }
-        let half = |along: Vec2| valley(&mean_profile(ink, p, normal, along, line_width), line_width);
+        let half = |along: Vec2| valley(|s| mean_along(ink, p + normal * s, along, line_width), line_width);
         let (a, b) = (half(normal.turn_90())?, half(-normal.turn_90())?);
         if a.depth().min(b.depth()) < EVEN * a.depth().max(b.depth()) {
             return None;
@@ -112,7 +122,33 @@ fn deepest(ink: &Raster<f32>, p: Point, line_width: f64) -> Option<Valley> {
         let here = (ink.sample(p - along) + ink.sample(p + along)) * 0.5;
         (here < CROSSED * found.ridge + (1.0 - CROSSED) * found.here).then_some(found)
     };
-    (0..DIRECTIONS).filter_map(across).max_by(|a, b| a.depth().total_cmp(&b.depth()))
+    (-TURNS..=TURNS).filter_map(across).max_by(|a, b| a.depth().total_cmp(&b.depth()))
+}
+
+/// The direction across the edges around a point, by the structure tensor of the ink within a line width; `None` where they
+/// have no common direction, as in texture, of which a page can be full.
+fn normal(ink: &Raster<f32>, p: Point, line_width: f64) -> Option<Vec2> {
+    let spacing = (line_width / EDGES as f64).max(1.0);
+    let (x, y) = (floor(p.x), floor(p.y));
+    // Twice the angle of a gradient, weighted by its square, and the sum of the weights.
+    let (mut double, mut whole) = (Vec2::ZERO, 0.0);
+    for (i, j) in (-EDGES..=EDGES).flat_map(|j| (-EDGES..=EDGES).map(move |i| (i, j))) {
+        if i * i + j * j <= EDGES * EDGES {
+            let place = |k: i64| (spacing * k as f64).round() as i64;
+            let g = gradient(ink, x + place(i), y + place(j));
+            double += Vec2::new(g.x * g.x - g.y * g.y, 2.0 * g.x * g.y);
+            whole += g.hypot2();
+        }
+    }
+    (double.hypot() > COHERENT * whole).then(|| Vec2::from_angle(0.5 * double.atan2()))
+}
+
+/// Sobel's.
+fn gradient(ink: &Raster<f32>, x: i64, y: i64) -> Vec2 {
+    let at = |dx: i64, dy: i64| ink.get(x + dx, y + dy).unwrap_or(0.0);
+    let (falling, rising) = (at(1, 1) - at(-1, -1), at(1, -1) - at(-1, 1));
+    let (gx, gy) = (2.0 * (at(1, 0) - at(-1, 0)), 2.0 * (at(0, 1) - at(0, -1)));
+    Vec2::new(f64::from(gx + falling + rising), f64::from(gy + falling - rising))
 }
 
 /// Whether there is more ink to both sides along the normal, and enough for ridges, as a few samples tell.
@@ -124,35 +160,35 @@ fn is_lower(ink: &Raster<f32>, p: Point, normal: Vec2, line_width: f64) -> bool 
     ridge > 0.8 * RIDGE && mean(p) < ridge
 }
 
-/// Mean ink on lines through a point, samples [`FINE`] apart along the normal, the point in the middle.
-fn mean_profile(ink: &Raster<f32>, p: Point, normal: Vec2, along: Vec2, line_width: f64) -> Vec<f32> {
-    let reach = (3.0 * (FARTHEST * line_width + PAPER) / FINE).ceil() as i32;
-    let length = ((ALONG * line_width).max(LEAST_ALONG) / STEP).ceil() as i32;
-    let mean = |k: i32| {
-        let q = p + normal * (FINE * f64::from(k));
-        let sum: f32 = (0..=length).map(|s| ink.sample(q + along * (STEP * f64::from(s)))).sum();
-        sum / (length + 1) as f32
-    };
-    (-reach..=reach).map(mean).collect()
+/// Mean ink from a point on along a valley.
+fn mean_along(ink: &Raster<f32>, p: Point, along: Vec2, line_width: f64) -> f32 {
+    let length = ((ALONG * line_width).max(LEAST_ALONG) / STEP).ceil();
+    let count = length.min(MOST_ALONG);
+    let step = along * (STEP * length / count);
+    let sum: f32 = (0..=count as i32).map(|s| ink.sample(p + step * f64::from(s))).sum();
+    sum / (count as f32 + 1.0)
 }
 
-/// The valley in whose slopes the middle of a profile lies, if it has a line's ridge on either side.
-fn valley(profile: &[f32], line_width: f64) -> Option<Valley> {
-    let middle = profile.len() / 2;
-    let slope = (SLOPE * line_width / FINE).ceil() as usize;
-    let lowest = (middle - slope..=middle + slope).min_by(|&a, &b| profile[a].total_cmp(&profile[b]))?;
-    let near = (NEAREST * line_width / FINE).floor().max(1.0) as usize;
-    let far = ((FARTHEST * line_width + PAPER) / FINE).ceil() as usize;
+/// The valley in whose slopes the middle of a profile lies, if it has a line's ridge on either side; the profile is a
+/// function of the distance from there in pixels.
+fn valley(profile: impl Fn(f64) -> f32, line_width: f64) -> Option<Valley> {
+    let spacing = FINE.max(line_width / FINEST);
+    let at = |k: i32| (k, profile(spacing * f64::from(k)));
+    let slope = (SLOPE * line_width / spacing).ceil() as i32;
+    let (lowest, bottom) = (-slope..=slope).map(at).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let near = (NEAREST * line_width / spacing).floor().max(1.0) as i32;
+    let far = ((FARTHEST * line_width + PAPER) / spacing).ceil() as i32;
     // Ink of the ridge on one side, and how far away it is.
-    let ridge = |side: i64| {
-        let at = |k: usize| profile[(lowest as i64 + side * k as i64) as usize];
-        let top = (1..=far).max_by(|&a, &b| at(a).total_cmp(&at(b)).then(b.cmp(&a)))?;
-        let ends = (top..=2 * top + 2).any(|k| at(k) < (1.0 - SHALLOWEST) * at(top));
-        (top >= near && ends && at(top) > RIDGE).then_some((at(top), top))
+    let ridge = |side: i32| {
+        let at = |k: i32| (k, at(lowest + side * k).1);
+        let (top, ridge) = (1..=far).map(at).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
+        let is_ridge = top >= near && ridge > RIDGE && bottom < (1.0 - SHALLOWEST) * ridge;
+        let ends = || (top..=2 * top + 2).any(|k| at(k).1 < (1.0 - SHALLOWEST) * ridge);
+        (is_ridge && ends()).then_some((ridge, top))
     };
     let (left, right) = (ridge(-1)?, ridge(1)?);
-    let found = Valley { ridge: left.0.min(right.0), bottom: profile[lowest], here: profile[middle] };
-    let between = (lowest - left.1..=lowest + right.1).contains(&middle) && found.here < found.ridge;
+    let found = Valley { ridge: left.0.min(right.0), bottom, here: at(0).1 };
+    let between = (lowest - left.1..=lowest + right.1).contains(&0) && found.here < found.ridge;
     (between && found.bottom > DEEP * found.ridge && found.depth() > SHALLOWEST * found.ridge).then_some(found)
 }
 
@@ -171,7 +207,9 @@ impl Valley {
 #[cfg(test)]
 mod tests {
     use super::super::blur::profile_at;
+    use super::super::smooth;
     use super::*;
+    use std::cell::Cell;
 
     const MIDDLE: Point = Point::new(40.2, 39.9);
 
@@ -217,6 +255,45 @@ mod tests {
                     assert_eq!(deepened(&ink, line_width), [], "{width} {angle:.2} {line_width}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_profile_has_as_many_samples_for_the_widest_line_as_for_a_middling_one() {
+        let samples = |width: f64| {
+            let count = Cell::new(0);
+            // Two ridges that do not end: every sample that may be needed is.
+            let profile = |s: f64| {
+                count.set(count.get() + 1);
+                if s.abs() < 0.25 * width { 0.5 } else { 1.0 }
+            };
+            assert!(valley(profile, width).is_none());
+            count.get()
+        };
+        let most = [5.0, 14.0].map(samples).into_iter().max();
+        assert!([20.0, 60.0, 250.0, 4000.0].into_iter().all(|width| Some(samples(width)) <= most));
+    }
+
+    #[test]
+    fn texture_has_no_direction_in_which_valleys_could_run() {
+        for size in [1.5f32, 2.5, 4.0] {
+            // A linear congruential generator, its upper bits.
+            let mut dice = 1u32;
+            let grain = Raster::from_fn(120, 120, |_, _| {
+                dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (dice >> 8) as f32 / f32::from(1u16 << 15) / 256.0 - 1.0
+            });
+            let ink = smooth(grain, size).map(|i| (0.5 + size * i).clamp(0.0, 1.0));
+            let places = (20..100).flat_map(|y| (20..100).map(move |x| (x, y)));
+            let candidates: Vec<_> = places.filter(|&(x, y)| is_candidate(&ink, x, y, 2.0 * f64::from(size))).collect();
+            let middle = |&(x, y): &(usize, usize)| Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            let looked_at =
+                candidates.iter().filter(|p| normal(&ink, middle(p), 2.0 * f64::from(size)).is_some()).count();
+            assert!(
+                candidates.len() > 200 && 4 * looked_at < candidates.len(),
+                "{size}: {looked_at} of {}",
+                candidates.len()
+            );
         }
     }
 }

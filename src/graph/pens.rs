@@ -1,23 +1,37 @@
 //! Which pen drew what, on a page in colour.
 //!
-//! Colours are read in the middle of lines, where they are single, and grouped into few pens. Lines are cut where
-//! their colour changes for good, and strokes end there.
+//! Colours are read in the middle of lines, where they are single, and grouped into few pens. A pen's colour is that of
+//! its full ink: an edge, a blur or a line thinner than a pixel shows less of it. Lines are cut where their colour changes
+//! for good, and strokes end there.
 
 use super::lines::{Line, Place};
 use super::{Dot, StrokeGraph, Trail};
-use crate::clean::LineImage;
+use crate::clean::{JOINING, LineImage, profile_at, unblurred_width};
 use crate::drawing::{Color, Fill};
 use crate::raster::Raster;
 use crate::streamline::STEP;
-use kurbo::{Point, Shape};
+use kurbo::{Point, Shape, Vec2};
 use petgraph::stable_graph::EdgeIndex;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Colours nearer than this are of one pen; lightness counts less, for pressure changes it.
 const APART: f64 = 0.12;
 const LIGHTNESS: f64 = 0.4;
-/// Less chroma than this in Oklab is grey, and grey ink is one black pen.
-const GREY: f64 = 0.045;
+/// Less chroma than this in Oklab is grey: what rounding leaves of it.
+const GREY: f64 = 0.02;
+/// Ink is full in the middle of a line of at least so many pixels of the scan that still has this share of its middle's ink
+/// a quarter of its width beside it, or no more than this a pixel beyond its edge: no blur thins that.
+const WIDE: f64 = 2.5;
+const FLAT: f32 = 0.9;
+const SHARP: f32 = 0.05;
+/// Lines too thin for full ink have been black if they ever show this much.
+const THIN_BLACK: f64 = 0.5;
+/// Blur leaves at least this share of the ink of what passes for a line.
+const LEAST_LEFT: f64 = 0.35;
+/// Ink that lacks less than this of black is black: what rounding and compression take, or so many times what the ink
+/// of its lines varies by.
+const NEARLY: f64 = 0.03;
+const GRAINS: f64 = 1.5;
 /// Colours are first gathered in cells of this size.
 const CELL: f64 = 0.02;
 /// A pen draws at least this many line widths.
@@ -27,38 +41,109 @@ const LASTING: f64 = 3.0;
 /// Every so many points of a line one colour is taken into account.
 const STRIDE: usize = 4;
 
+/// A colour along a line.
+#[derive(Clone, Copy)]
+struct Reading {
+    color: Color,
+    /// Whether it is that of full ink.
+    full: bool,
+    /// The length of line that it stands for, in pixels.
+    length: f64,
+}
+
 /// The pens of a page.
 pub(super) struct Pens<'a> {
     image: &'a LineImage,
     colors: &'a Raster<[u8; 3]>,
-    /// The pens' colours; the first is black.
+    /// The pens' colours; the first is that of most grey ink.
     pens: Vec<Color>,
 }
 
 impl<'a> Pens<'a> {
-    /// The pens of a page; `None` when it is not in colour.
+    /// The pens of a page; `None` when nothing is known of its colours.
     pub fn of(image: &'a LineImage, lines: &[Line], dots: &[Dot]) -> Option<Self> {
         let colors = image.colors.as_ref()?;
         let mut pens = Self { image, colors, pens: Vec::new() };
-        let of_lines = lines.iter().flat_map(|line| {
-            let measured = (0..line.points.len()).filter(|&k| line.widths[k].is_finite()).step_by(STRIDE);
-            measured.map(|k| (line.points[k], STRIDE as f64 * STEP))
-        });
-        let of_dots = dots.iter().map(|dot| (dot.centre, dot.diameter));
-        let mut samples: Vec<(Color, f64)> =
-            of_lines.chain(of_dots).filter_map(|(p, length)| Some((pens.color_at(p)?, length))).collect();
+        let of_lines = lines.iter().flat_map(|line| pens.along(&line.points, &line.widths).into_iter().flatten());
+        let of_dots = dots.iter().filter_map(|dot| pens.of_centre(dot));
+        let mut readings: Vec<Reading> = of_lines.step_by(STRIDE).chain(of_dots).collect();
         for fill in &image.solids {
-            let length = fill.outline.perimeter(1.0);
-            samples.extend(pens.inside(fill).map(|color| (color, length)));
+            let length = fill.outline.perimeter(1.0) / (STRIDE as f64 * STEP);
+            readings.extend(pens.inside(fill).map(|color| Reading { color, full: true, length }));
         }
-        pens.pens = cluster(&samples, LEAST_LENGTH * image.line_width);
+        pens.pens = cluster(&readings, LEAST_LENGTH * image.line_width / STRIDE as f64);
+        pens.pens[0] = pens.steeped(pens.pens[0]);
         Some(pens)
     }
 
-    /// The colour of the ink at a place: that of the pixel around it with the most ink.
+    /// Whether a pixel's colour is more of grain than of its ink.
+    fn is_unsure(&self, p: Point) -> bool {
+        self.image.noise.at(p).grain() >= 0.5
+    }
+
+    /// Black for what hardly differs from it, and on a page whose ink is unsure for all grey: what its lines lack is pressure,
+    /// and paper between the grains.
+    fn steeped(&self, grey: Color) -> Color {
+        if self.image.noise.mean().grain() >= 0.5 {
+            return Color::BLACK;
+        }
+        let lacking = f64::from(grey.0.into_iter().max().unwrap_or(0)) / 255.0;
+        if lacking < NEARLY.max(GRAINS * self.image.noise.mean().along) { Color::BLACK } else { grey }
+    }
+
+    /// The colour at each point of a line; `None` where the line is not alone. On a scan, the mean of what is near, so that
+    /// grain does not count.
+    fn along(&self, points: &[Point], widths: &[f64]) -> Vec<Option<Reading>> {
+        let mut sorted: Vec<f64> = widths.iter().copied().filter(|width| width.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let Some(&typical) = sorted.get(sorted.len() / 2) else { return vec![None; points.len()] };
+        let heading = |k: usize| points[(k + 1).min(points.len() - 1)] - points[k.saturating_sub(1)];
+        let at = |k: usize| {
+            let width = if self.is_unsure(points[k]) { typical } else { widths[k] };
+            self.reading(points[k], heading(k), width, STEP).filter(|_| widths[k].is_finite())
+        };
+        let readings: Vec<Option<Reading>> = (0..points.len()).map(at).collect();
+        let lasting = 0.5 * LASTING * self.image.line_width / STEP;
+        let mean = |k: usize| {
+            let reach = if self.is_unsure(points[k]) { lasting as usize } else { 0 };
+            let near = &readings[k.saturating_sub(reach)..(k + reach + 1).min(readings.len())];
+            Reading { color: mean(near.iter().flatten().map(|reading| reading.color)), ..readings[k]? }.into()
+        };
+        (0..points.len()).map(mean).collect()
+    }
+
+    /// The colour of the ink at a place of a line of a heading and a width.
+    fn reading(&self, p: Point, heading: Vec2, width: f64, length: f64) -> Option<Reading> {
+        let (image, color) = (self.image, self.color_at(p)?);
+        if self.is_unsure(p) {
+            return Some(Reading { color: self.unblurred(color, width), full: true, length });
+        }
+        let normal = if heading.hypot2() > 0.0 { heading.normalize().turn_90() } else { Vec2::new(1.0, 0.0) };
+        let beside = |offset: f64| [-offset, offset].map(|offset| image.ink.sample(p + normal * offset));
+        let [inner, outer] = [beside(0.25 * width), beside(0.5 * width + image.scale)];
+        let middle = image.ink.sample(p);
+        let shows_all = inner[0].min(inner[1]) >= FLAT * middle || outer[0].min(outer[1]) <= SHARP * middle;
+        Some(Reading { color, full: shows_all && width >= WIDE * image.scale, length })
+    }
+
+    /// The colour that the middle of a line of a width had before it was blurred.
+    fn unblurred(&self, color: Color, width: f64) -> Color {
+        // Of the blur, what the ink was smoothed by is not in the colours.
+        let smoothing = JOINING * self.image.scale;
+        let blur = (self.image.blur.powi(2) - smoothing.powi(2)).max(0.0).sqrt();
+        if blur <= 0.0 {
+            return color;
+        }
+        let left = profile_at(0.0, unblurred_width(width, self.image.blur), blur).max(LEAST_LEFT);
+        Color(color.0.map(|v| (255.0 - f64::from(255 - v) / left).round() as u8))
+    }
+
+    /// The colour of the ink at a place: that of the pixel around it with the most ink, or, so that grain does not count, of
+    /// its own on a scan.
     fn color_at(&self, p: Point) -> Option<Color> {
         let (x, y) = ((p.x / self.image.scale).floor() as i64, (p.y / self.image.scale).floor() as i64);
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+        let reach = if self.is_unsure(p) { 0 } else { 1 };
+        let around = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)));
         let pixels = around.filter_map(|(x, y)| self.colors.get(x, y));
         pixels.min_by_key(|rgb| rgb.iter().min().copied()).map(Color)
     }
@@ -71,8 +156,19 @@ impl<'a> Pens<'a> {
         let grid = (0..GRID * GRID).map(|k| {
             Point::new(bounds.x0 + cell(k % GRID) * bounds.width(), bounds.y0 + cell(k / GRID) * bounds.height())
         });
-        let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.ink.sample(*p) > 0.6);
-        median(inside.filter_map(|p| self.color_at(p)).map(|color| (color, 1.0)).collect())
+        let inside = grid.filter(|p| fill.outline.winding(*p) % 2 != 0 && self.image.solid.at(*p) == Some(true));
+        let colors = |points: &mut dyn Iterator<Item = Point>| -> Vec<(Color, f64)> {
+            points.filter_map(|p| self.color_at(p)).map(|color| (color, 1.0)).collect()
+        };
+        // A sliver may lie between the points of the grid, but not beside its own outline.
+        median(colors(&mut { inside }))
+            .or_else(|| median(colors(&mut fill.outline.elements().iter().filter_map(|el| el.end_point()))))
+    }
+
+    /// The colour of a solid region: its own, unless it is nearly a pen's.
+    fn of_fill(&self, color: Color) -> Color {
+        let pen = self.pens[self.pen(color)];
+        if distance(place(color), place(pen)) < 0.5 * APART { pen } else { self.steeped(color) }
     }
 
     /// The number of the pen nearest to a colour.
@@ -83,11 +179,16 @@ impl<'a> Pens<'a> {
     /// The pen of each point of a line, steadied: what does not last is taken for the colour around it. `None` where
     /// the line is not alone.
     fn of_points(&self, points: &[Point], widths: &[f64]) -> Vec<Option<usize>> {
-        let pens: Vec<Option<usize>> = points
-            .iter()
-            .zip(widths)
-            .map(|(&p, w)| self.color_at(p).filter(|_| w.is_finite()).map(|c| self.pen(c)))
-            .collect();
+        let readings = self.along(points, widths);
+        let grey = |reading: &Reading| is_grey(reading.color);
+        let greys = || readings.iter().flatten().filter(|reading| grey(reading));
+        // Of greys only full ink tells the pen; where there is none, the line has one pen, by its strongest ink.
+        let of_thin = if greys().any(|reading| reading.full) { None } else { strongest(greys().copied().collect()) };
+        let of_thin = of_thin.map(|color| self.pen(color));
+        let pen = |reading: Reading| {
+            if reading.full || !grey(&reading) { Some(self.pen(reading.color)) } else { of_thin }
+        };
+        let pens: Vec<Option<usize>> = readings.iter().map(|reading| reading.and_then(pen)).collect();
         let measured: Vec<usize> = (0..pens.len()).filter(|&k| pens[k].is_some()).collect();
         let least = ((LASTING * self.image.line_width / STEP) as usize).max(2);
         let most = self.majority(measured.iter().filter_map(|&k| pens[k]));
@@ -127,9 +228,13 @@ impl<'a> Pens<'a> {
         places
     }
 
+    fn of_centre(&self, dot: &Dot) -> Option<Reading> {
+        self.reading(dot.centre, Vec2::ZERO, dot.diameter, dot.diameter)
+    }
+
     /// The colour of a dot.
     fn of_dot(&self, dot: &Dot) -> Color {
-        self.color_at(dot.centre).map_or(Color::BLACK, |color| self.pens[self.pen(color)])
+        self.of_centre(dot).map_or(Color::BLACK, |reading| self.pens[self.pen(reading.color)])
     }
 
     /// Gives dots, strokes and regions their pens' colours; strokes are split where edges of two pens follow one another.
@@ -139,7 +244,7 @@ impl<'a> Pens<'a> {
             dot.color = self.of_dot(dot);
         }
         for fill in &mut graph.fills {
-            fill.color = self.inside(fill).map_or(Color::BLACK, |color| self.pens[self.pen(color)]);
+            fill.color = self.inside(fill).map_or(Color::BLACK, |color| self.of_fill(color));
         }
         let pens: BTreeMap<EdgeIndex, Option<usize>> = graph
             .graph
@@ -187,16 +292,45 @@ impl<'a> Pens<'a> {
     }
 }
 
-/// Few colours that stand for weighted samples: black for what is grey, then the others, the most used first.
+/// Gives lines the pens of broader ones, which show their full ink, where those are nearly theirs.
+pub(super) fn share(graph: &mut StrokeGraph, broader: &StrokeGraph) {
+    let pens: BTreeSet<Color> = broader.trails.iter().map(|trail| trail.color).collect();
+    let shared = |color: &mut Color| {
+        let like = pens.iter().filter(|pen| is_grey(**pen) == is_grey(*color));
+        let apart = |pen: &Color| distance(place(*pen), place(*color));
+        let nearest = like.min_by(|a, b| apart(a).total_cmp(&apart(b))).filter(|pen| apart(pen) < APART);
+        *color = nearest.copied().unwrap_or(*color);
+    };
+    graph.trails.iter_mut().map(|trail| &mut trail.color).for_each(shared);
+    graph.dots.iter_mut().map(|dot| &mut dot.color).for_each(shared);
+}
+
+/// Few colours that stand for many: greys, then the others, the most used first; black where there is no grey.
 ///
 /// Agglomeration: cells of the colour space are merged, the nearest two first, up to [`APART`]. What stays below
-/// `least` in weight is no pen of its own.
-fn cluster(samples: &[(Color, f64)], least: f64) -> Vec<Color> {
-    let mut cells: BTreeMap<[i64; 3], Vec<(Color, f64)>> = BTreeMap::new();
-    for &(color, weight) in samples.iter().filter(|(color, _)| !is_grey(*color)) {
-        cells.entry(place(color).map(|v| (v / CELL).floor() as i64)).or_default().push((color, weight));
+/// `least` in length is no pen of its own. Only where it is full does ink tell greys apart: less of black is grey as well.
+fn cluster(readings: &[Reading], least: f64) -> Vec<Color> {
+    let (greys, colors): (Vec<Reading>, Vec<Reading>) = readings.iter().partition(|reading| is_grey(reading.color));
+    let (full, thin): (Vec<Reading>, Vec<Reading>) = greys.into_iter().partition(|reading| reading.full);
+    let mut pens = clusters(&full, least);
+    let darkest = pens.iter().map(|pen| place(*pen)[0]).fold(f64::INFINITY, f64::min);
+    if let Some(grey) = strongest(thin).filter(|grey| place(*grey)[0] < darkest - APART) {
+        let ink = 1.0 - f64::from(grey.0[0]) / 255.0;
+        pens.push(if ink > THIN_BLACK { Color::BLACK } else { grey });
     }
-    let mut clusters: Vec<Vec<(Color, f64)>> = cells.into_values().collect();
+    if pens.is_empty() {
+        pens.push(Color::BLACK);
+    }
+    pens.extend(clusters(&colors, least));
+    pens
+}
+
+fn clusters(readings: &[Reading], least: f64) -> Vec<Color> {
+    let mut cells: BTreeMap<[i64; 3], Vec<Reading>> = BTreeMap::new();
+    for &reading in readings {
+        cells.entry(place(reading.color).map(|v| (v / CELL).floor() as i64)).or_default().push(reading);
+    }
+    let mut clusters: Vec<Vec<Reading>> = cells.into_values().collect();
     let mut centres: Vec<[f64; 3]> = clusters.iter().map(|c| centre(c)).collect();
     loop {
         let pairs = (0..centres.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
@@ -210,19 +344,33 @@ fn cluster(samples: &[(Color, f64)], least: f64) -> Vec<Color> {
         clusters[j].extend(other);
         centres[j] = centre(&clusters[j]);
     }
-    let weight = |c: &[(Color, f64)]| c.iter().map(|s| s.1).sum::<f64>();
-    clusters.retain(|c| weight(c) >= least);
-    clusters.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-    std::iter::once(Color::BLACK).chain(clusters.into_iter().filter_map(median)).collect()
+    clusters.retain(|c| length(c) >= least);
+    clusters.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    clusters.into_iter().filter_map(full_ink).collect()
 }
 
-/// The pen nearest to a colour; grey is the first pen's alone.
+/// The colour of full ink: the median of where it is seen, or else the strongest ink.
+fn full_ink(readings: Vec<Reading>) -> Option<Color> {
+    let full: Vec<(Color, f64)> = readings.iter().filter(|r| r.full).map(|r| (r.color, r.length)).collect();
+    if full.is_empty() { strongest(readings) } else { median(full) }
+}
+
+/// The colour of lines that are too thin to show full ink: the median of the stronger half.
+fn strongest(mut readings: Vec<Reading>) -> Option<Color> {
+    readings.sort_by_key(|reading| reading.color.0.iter().map(|&v| u32::from(v)).sum::<u32>());
+    readings.truncate(readings.len().div_ceil(2));
+    median(readings.into_iter().map(|reading| (reading.color, reading.length)).collect())
+}
+
+fn length(readings: &[Reading]) -> f64 {
+    readings.iter().map(|reading| reading.length).sum()
+}
+
+/// The pen nearest to a colour, among greys or among the others if it has any.
 fn nearest(color: Color, pens: &[Color]) -> usize {
-    if is_grey(color) {
-        return 0;
-    }
     let apart = |pen: usize| distance(place(color), place(pens[pen]));
-    (1..pens.len()).min_by(|&a, &b| apart(a).total_cmp(&apart(b))).unwrap_or(0)
+    let like = (0..pens.len()).filter(|&pen| is_grey(pens[pen]) == is_grey(color));
+    like.min_by(|&a, &b| apart(a).total_cmp(&apart(b))).unwrap_or(0)
 }
 
 fn is_grey(color: Color) -> bool {
@@ -240,9 +388,15 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-fn centre(samples: &[(Color, f64)]) -> [f64; 3] {
-    let total: f64 = samples.iter().map(|s| s.1).sum();
-    [0, 1, 2].map(|k| samples.iter().map(|&(color, w)| w * place(color)[k]).sum::<f64>() / total)
+fn centre(readings: &[Reading]) -> [f64; 3] {
+    let total = length(readings);
+    [0, 1, 2].map(|k| readings.iter().map(|r| r.length * place(r.color)[k]).sum::<f64>() / total)
+}
+
+fn mean(colors: impl Iterator<Item = Color>) -> Color {
+    let (sum, count) = colors
+        .fold(([0u32; 3], 0), |(sum, count), color| ([0, 1, 2].map(|c| sum[c] + u32::from(color.0[c])), count + 1));
+    Color(sum.map(|channel| (channel / count.max(1)) as u8))
 }
 
 /// The weighted median of each channel.
@@ -267,6 +421,10 @@ fn median(samples: Vec<(Color, f64)>) -> Option<Color> {
 mod tests {
     use super::*;
 
+    fn full(color: Color, length: f64) -> Reading {
+        Reading { color, full: true, length }
+    }
+
     #[test]
     fn many_shades_of_few_inks_are_few_pens() {
         let inks = [[210, 30, 30], [30, 60, 200], [20, 140, 60], [250, 230, 20], [160, 190, 250], [240, 130, 10]];
@@ -277,10 +435,10 @@ mod tests {
                 let press = 0.85 + 0.15 * f64::from(k % 8) / 7.0;
                 let noise = [k % 5, k % 3, k % 7];
                 let channel = |c: usize| (255.0 - press * f64::from(255 - ink[c])) as u8;
-                samples.push((Color([0, 1, 2].map(|c| channel(c).saturating_sub(noise[c]))), 1.0));
+                samples.push(full(Color([0, 1, 2].map(|c| channel(c).saturating_sub(noise[c]))), 1.0));
             }
         }
-        samples.extend((0..40u8).map(|k| (Color([40 + k, 42 + k, 45 + k]), 1.0)));
+        samples.extend((0..40u8).map(|k| full(Color([40 + k, 42 + k, 45 + k]), 1.0)));
         let pens = cluster(&samples, 10.0);
         assert_eq!(pens.len(), 1 + inks.len(), "{pens:?}");
         for ink in inks {
@@ -294,7 +452,7 @@ mod tests {
 
     #[test]
     fn a_stray_colour_is_no_pen() {
-        let samples = [(Color([200, 20, 20]), 100.0), (Color([20, 20, 220]), 3.0)];
+        let samples = [full(Color([200, 20, 20]), 100.0), full(Color([20, 20, 220]), 3.0)];
         assert_eq!(cluster(&samples, 10.0), [Color::BLACK, Color([200, 20, 20])]);
     }
 }

@@ -143,10 +143,10 @@ impl<'a, 'b> Walker<'a, 'b> {
             });
             let Some(mut next) = self.advance(&steps, covered.is_some()) else {
                 let Some(stretch) = covered else {
-                    let stop = self.stop_at(here.point);
+                    let stop = self.stop_at(here);
                     if stop == Stop::Solid {
-                        let outside = steps.iter().rposition(|s| !self.is_solid(s.point));
-                        steps.truncate(outside.map_or(sure, |k| (k + 2).max(sure)));
+                        let (point, heading) = (here.point + here.heading * (2.0 * STEP), here.heading);
+                        steps.push(Step { point, heading, width: f64::NAN, drift: 0.0 });
                     }
                     return (steps, stop, false);
                 };
@@ -253,6 +253,9 @@ impl<'a, 'b> Walker<'a, 'b> {
         let here = &steps[steps.len() - 1];
         let heading = self.next_heading(steps, coasting);
         let mut point = here.point + heading * STEP;
+        if self.is_solid(point) {
+            return None;
+        }
         let normal = heading.turn_90();
         let inked = self.image.goes_on(point, heading, self.core);
         let profile = self.profile(point, normal).filter(|_| inked)?;
@@ -307,20 +310,21 @@ impl<'a, 'b> Walker<'a, 'b> {
         cross_profile(&self.image.ink, p, normal, 0.85 * self.width + 1.0)
     }
 
-    fn stop_at(&self, p: Point) -> Stop {
+    fn stop_at(&self, here: &Step) -> Stop {
+        let p = here.point;
         let (w, h) = (self.image.mask.width() as f64, self.image.mask.height() as f64);
         let margin = 1.0;
         let inside = p.x > margin && p.y > margin && p.x < w - margin && p.y < h - margin;
         match inside {
             false => Stop::Border,
-            true if self.is_solid(p) => Stop::Solid,
+            true if self.is_solid(p + here.heading * (2.0 * STEP)) => Stop::Solid,
             true => Stop::InkEnd,
         }
     }
 
-    /// Whether a point lies in a solid region, whose ink is not in the mask of lines.
+    /// Whether a point lies in a solid region, whose ink is no line's.
     fn is_solid(&self, p: Point) -> bool {
-        self.image.mask.at(p) == Some(false) && self.image.ink.at(p).is_some_and(|ink| ink > 0.6)
+        self.image.solid.at(p) == Some(true)
     }
 }
 

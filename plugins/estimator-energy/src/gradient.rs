@@ -5,7 +5,7 @@
 //! `sum w |p + c2 + c0 conj(p)|^2`, depends on them by three moments only: `m0 = sum w`, `m2 = sum w p` and
 //! `m4 = sum w p^2`.
 
-use fieldtrace::clean::{LineImage, Noise, NoiseMap};
+use fieldtrace::clean::LineImage;
 use fieldtrace::raster::Raster;
 use num_complex::Complex64;
 use std::ops::{AddAssign, Mul};
@@ -79,6 +79,7 @@ fn edge(ink: &Raster<f32>, x: i64, y: i64) -> Moments {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fieldtrace::clean::{Decisions, Noise, NoiseMap};
     use fieldtrace::raster::Mask;
 
     #[test]
@@ -105,11 +106,13 @@ mod tests {
         let depth = ink.clone();
         let image = LineImage {
             ink,
+            solid: mask.map(|_| false),
             mask,
             depth,
             line_width: 3.0,
             scale: 1.0,
             noise: NoiseMap::even(Noise::default()),
+            decisions: Decisions::default(),
             blur: 0.0,
             solids: Vec::new(),
             broad: None,

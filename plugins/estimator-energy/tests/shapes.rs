@@ -30,11 +30,13 @@ fn bare(ink: Raster<f32>) -> LineImage {
     let depth = mask.map(|m| f32::from(u8::from(m)));
     LineImage {
         ink,
+        solid: mask.map(|_| false),
         mask,
         depth,
         line_width: 3.0,
         scale: 1.0,
         noise: NoiseMap::even(Noise::default()),
+        decisions: Decisions::default(),
         blur: 0.0,
         solids: Vec::new(),
         broad: None,

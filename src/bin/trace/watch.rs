@@ -1,6 +1,6 @@
 //! What a trace shows while it runs: pictures of the stages, and their seconds and counts.
 
-use fieldtrace::clean::{LineImage, Noise, NoiseMap};
+use fieldtrace::clean::{Decisions, LineImage, Noise, NoiseMap};
 use fieldtrace::drawing::Drawing;
 use fieldtrace::error::Result;
 use fieldtrace::field::PolyVectorField;
@@ -8,6 +8,7 @@ use fieldtrace::graph::{Line, Ran, StrokeGraph};
 use fieldtrace::hooks::Observer;
 use fieldtrace::inspect::DebugDir;
 use fieldtrace::streamline::Streamline;
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// Seconds and counts of the stages so far, printed where the user asked for it.
@@ -43,6 +44,24 @@ impl Stages {
     }
 }
 
+/// What is paper.
+fn ground(Decisions { inverted, grain, .. }: &Decisions) -> String {
+    let tone = if *inverted { "dark, light is ink" } else { "light, dark is ink" };
+    if *grain > 0.0 { format!("{tone}; grain of {:.1} % of full ink", 100.0 * grain) } else { format!("{tone}; flat") }
+}
+
+/// What is ink, and how many inks there are.
+fn threshold(Decisions { threshold, hues, .. }: &Decisions) -> String {
+    let from = match threshold {
+        Some(threshold) => format!("from a darkness of {threshold:.2}"),
+        None => "by the darkest ink near each place".into(),
+    };
+    match hues {
+        0 => format!("{from}; all of it grey"),
+        hues => format!("{from}; {hues} of a hue of their own"),
+    }
+}
+
 /// How far the ink is trusted, and why.
 fn edges(noise: &NoiseMap) -> String {
     let Noise { across, along, blur } = noise.mean();
@@ -53,6 +72,14 @@ fn edges(noise: &NoiseMap) -> String {
         _ => format!("unsure in part, {:.0} to {:.0} %", 100.0 * least, 100.0 * most),
     };
     format!("{kind}: middles to {across:.2} pixels, ink to {:.0} %, blur {blur:.1} pixels", 100.0 * along)
+}
+
+/// The colours of the strokes, and how many have each.
+fn pens(drawing: &Drawing) -> String {
+    let mut counts = BTreeMap::new();
+    drawing.strokes.iter().for_each(|stroke| *counts.entry(stroke.color.0).or_insert(0) += 1);
+    let pens = counts.iter().map(|([r, g, b], count)| format!("#{r:02x}{g:02x}{b:02x} {count}"));
+    pens.collect::<Vec<_>>().join(", ")
 }
 
 /// An observer that tells and draws what each stage made.
@@ -85,6 +112,8 @@ impl Observer for Watch<'_> {
             let (width, scale) = (image.line_width, image.scale);
             format!("{ink} ink pixels, lines {width:.1} wide{broad}, scale {scale:.2}, {solids} solids")
         });
+        self.stages.tell("ground (--invert)", || ground(&image.decisions));
+        self.stages.tell("ink (--threshold)", || threshold(&image.decisions));
         self.stages.tell("edges", || edges(&image.noise));
         self.draw(|debug| debug.on_line_image(image))
     }
@@ -131,6 +160,7 @@ impl Observer for Watch<'_> {
             let (strokes, pieces) = (drawing.strokes.len(), drawing.segment_count());
             format!("{strokes} strokes of {pieces} pieces, {} solid regions", drawing.fills.len())
         });
+        self.stages.tell("pens", || pens(drawing));
         self.draw(|debug| debug.on_drawing(drawing))
     }
 }

@@ -7,7 +7,7 @@ use super::ends::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
 use crate::clean::RIM;
 use crate::drawing::Dashes;
 use crate::graph::lines::{EndState, Line, Lines, Place};
-use crate::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
+use crate::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail, pens};
 use crate::streamline::STEP;
 use kurbo::{Affine, Line as Segment, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
@@ -22,7 +22,8 @@ const DRAWN: f64 = 2.0;
 const UNDER: f64 = 1.6;
 
 /// Joins the graph of a page's fine lines and that of its broad ones, whose image may have another scale.
-pub(crate) fn join(fine: StrokeGraph, mut broad: StrokeGraph) -> StrokeGraph {
+pub(crate) fn join(mut fine: StrokeGraph, mut broad: StrokeGraph) -> StrokeGraph {
+    pens::share(&mut fine, &broad);
     let factor = fine.page.scale / broad.page.scale;
     scale(&mut broad, factor);
     let edges: Vec<EdgeIndex> = broad.graph.edge_indices().collect();
