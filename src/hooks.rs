@@ -5,7 +5,7 @@ use crate::clean::LineImage;
 use crate::drawing::Drawing;
 use crate::error::Result;
 use crate::field::PolyVectorField;
-use crate::graph::StrokeGraph;
+use crate::graph::{Line, Ran, StrokeGraph};
 use crate::streamline::Streamline;
 
 /// Sees each stage's result as it passes and may change it in place; an error stops the trace.
@@ -35,6 +35,18 @@ pub trait Observer {
     #[allow(clippy::missing_errors_doc)]
     fn on_streamline(&mut self, image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
         Ok(true)
+    }
+    /// After each pass over the lines between streamlines and graph ([`crate::graph::REPAIRS`]): how much it changed, and
+    /// the lines as they are now, which can be looked at only.
+    #[allow(clippy::missing_errors_doc)]
+    fn on_lines(&mut self, image: &LineImage, ran: &Ran, lines: &[Line]) -> Result<()> {
+        Ok(())
+    }
+    /// After each pass over the graph of one image ([`crate::graph::FINISHES`]): how much it changed, and the graph as it is
+    /// now.
+    #[allow(clippy::missing_errors_doc)]
+    fn on_finish(&mut self, image: &LineImage, ran: &Ran, graph: &StrokeGraph) -> Result<()> {
+        Ok(())
     }
     /// After the streamlines, of fine lines and of broad ones, have become a graph.
     #[allow(clippy::missing_errors_doc)]

@@ -6,7 +6,7 @@ use crate::drawing::Drawing;
 use crate::error::{Error, Result};
 use crate::estimate::FieldEstimator;
 use crate::field::{FrameField, PolyVectorField};
-use crate::graph::StrokeGraph;
+use crate::graph::{Passes, StrokeGraph, Work};
 use crate::hooks::Observer;
 use crate::load::Scan;
 use crate::options::Options;
@@ -17,6 +17,7 @@ use crate::{fit, graph, streamline};
 pub struct Vectorizer {
     options: Options,
     estimator: Box<dyn FieldEstimator>,
+    passes: Passes,
 }
 
 impl Vectorizer {
@@ -34,13 +35,21 @@ impl Vectorizer {
     /// [`Error::Option`] when an option is out of its range.
     pub fn with(options: Options, estimator: Box<dyn FieldEstimator>) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, estimator })
+        Ok(Self { options, estimator, passes: Passes::default() })
     }
 
     /// The same with another source of fields.
     #[must_use]
     pub fn with_estimator(self, estimator: impl FieldEstimator + 'static) -> Self {
         Self { estimator: Box::new(estimator), ..self }
+    }
+
+    /// The same without one of the passes between streamlines and graph, to see what it is worth.
+    ///
+    /// # Errors
+    /// [`Error::Option`] when no pass of [`graph::passes()`] has the name.
+    pub fn without(self, pass: &str) -> Result<Self> {
+        Ok(Self { passes: self.passes.without(pass)?, ..self })
     }
 
     /// The options.
@@ -138,7 +147,7 @@ impl Vectorizer {
         let broad = image.broad.as_ref().map(|broad| self.layer(broad, field(broad)?, observer)).transpose()?;
         let mut graph = self.layer(image, field(image)?, observer)?;
         if let Some(broad) = broad {
-            graph = graph::layers::join(graph, broad);
+            graph = graph::join_layers(graph, broad);
         }
         (graph.page.width, graph.page.height) = (scan.gray.width() as f64, scan.gray.height() as f64);
         graph.page.dpi = scan.dpi;
@@ -159,7 +168,10 @@ impl Vectorizer {
                 streamlines.push(streamline);
             }
         }
-        graph::build(image, &streamlines, &self.options, &cancel)
+        self.passes.build(image, &streamlines, &self.options, &cancel, &mut |ran, work| match work {
+            Work::Lines(lines) => observer.on_lines(image, ran, lines),
+            Work::Graph(graph) => observer.on_finish(image, ran, graph),
+        })
     }
 }
 

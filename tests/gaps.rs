@@ -3,7 +3,7 @@
 mod common;
 
 use common::compare::{apart, bow, common_ink, lines};
-use common::draw::{arc, line, on_paper, polar, polyline, rendered, scan, scan_of, sheet};
+use common::draw::{arc, line, on_paper, polar, polyline, rendered, scan, scan_of, sheet, trace_under};
 use common::paper::Paper;
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Dashes, Drawing, Stroke};
@@ -23,7 +23,7 @@ fn page(strokes: Vec<Stroke>) -> Drawing {
 
 fn traced(scan: &Scan, gap: Option<f64>, dashes: Dashing) -> Drawing {
     let options = Options { gap, dashes, ..Options::default() };
-    Vectorizer::new(options).unwrap().trace(scan).unwrap()
+    trace_under(options, scan)
 }
 
 /// A line in two parts with so much paper between them, in line widths.

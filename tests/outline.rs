@@ -3,18 +3,17 @@
 mod common;
 
 use common::compare::common_ink;
-use common::draw::{circle, cubic, line, polar, polyline, rendered, scan, sheet};
+use common::draw::{circle, cubic, line, polar, polyline, rendered, scan, sheet, trace_under};
 use common::sweep::{ensure, pairs, steps, sweep};
 use fieldtrace::drawing::{Color, Drawing, Fill};
 use fieldtrace::load::Scan;
 use fieldtrace::options::{Options, StrokeWidth};
-use fieldtrace::pipeline::Vectorizer;
 use kurbo::{BezPath, Point, Vec2};
 
 const CENTER: Point = Point::new(80.2, 79.7);
 
 fn traced(scan: &Scan, width: StrokeWidth) -> Drawing {
-    Vectorizer::new(Options { width, ..Options::default() }).unwrap().trace(scan).unwrap()
+    trace_under(Options { width, ..Options::default() }, scan)
 }
 
 /// A brush that grows evenly from one width to another along an arc that turns by `bend` degrees.

@@ -143,7 +143,7 @@ mod tests {
                 let found = estimate(&ink, &mask, &depth, measured, share * blur);
                 let restored = unblurred_width(measured, found);
                 let name = format!("{width} {blur} {share}: {found} {restored}");
-                assert!((found - blur).abs() <= (share - 1.0).abs() * blur + STEP, "{name}");
+                assert!((found - blur).abs() <= (share - 1.0).abs() * blur + 1.5 * STEP, "{name}");
                 assert!((restored - width).abs() < if share == 1.0 { 0.25 } else { 0.4 }, "{name}");
             }
         }

@@ -1,15 +1,14 @@
 //! The graph from resolved lines.
 
-use super::contacts::{LineIndex, Place, around, direction, piece_count};
-use super::ends::{End, end_id};
-use super::nodes::Node;
+use super::lines::{End, EndState, Line, Lines, Place, end_id};
 use super::point_index::PointIndex;
+use super::resolve::Node;
 use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail};
 use crate::clean::LineImage;
 use crate::drawing::Color;
 use crate::options::Options;
-use crate::streamline::{STEP, Stop, Streamline};
-use kurbo::{Line, Point};
+use crate::streamline::STEP;
+use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -23,6 +22,17 @@ const SMOOTH: f64 = 0.61;
 /// Crossings at smaller angles than this sine's (8 degrees) are taken to overlap no further.
 const LEAST_SINE: f64 = 0.14;
 
+/// Parts of one line are taken for different lines when they are this many line widths apart along it.
+const OWN: f64 = 4.0;
+/// Lines that cross again within this many line widths graze each other, and cross once.
+const AGAIN: f64 = 6.0;
+/// A crossing within this many line widths of a node of both lines is that node.
+const AT_NODE: f64 = 1.2;
+/// A node lies no further inside a line's end than this many of its widths from where it was alone.
+const INWARDS: f64 = 6.0;
+/// A line that goes on through a node, or ends in the open, loses no more than the point at the node, in pixels.
+const AT_POINT: f64 = 0.6 * STEP;
+
 /// A cut of a line at a node.
 #[derive(Clone, Copy, Debug)]
 struct Cut {
@@ -31,14 +41,8 @@ struct Cut {
 }
 
 /// Builds nodes, edges and trails.
-pub(super) fn assemble(
-    image: &LineImage,
-    lines: &[Streamline],
-    ends: &[Option<End>],
-    nodes: &[Node],
-    options: &Options,
-) -> StrokeGraph {
-    let mut assembly = Assembly::new(image, lines, ends, nodes);
+pub(super) fn assemble(image: &LineImage, lines: &Lines, nodes: &[Node], options: &Options) -> StrokeGraph {
+    let mut assembly = Assembly::new(image, lines, nodes);
     assembly.add_tees();
     assembly.add_crossings();
     let edges: Vec<Vec<EdgeIndex>> = (0..lines.len()).map(|i| assembly.add_edges(i)).collect();
@@ -55,7 +59,7 @@ struct Assembly<'a> {
     nodes: &'a [Node],
     node_of_end: Vec<Option<usize>>,
     /// Lines between their nodes, and how far their indices moved.
-    lines: Vec<Streamline>,
+    lines: Lines,
     shift: Vec<f64>,
     cuts: Vec<Vec<Cut>>,
     indices: Vec<NodeIndex>,
@@ -63,30 +67,25 @@ struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    fn new(image: &'a LineImage, lines: &[Streamline], ends: &[Option<End>], nodes: &'a [Node]) -> Self {
-        let mut node_of_end = vec![None; ends.len()];
+    fn new(image: &'a LineImage, lines: &Lines, nodes: &'a [Node]) -> Self {
+        let mut node_of_end = vec![None; 2 * lines.len()];
         for (k, node) in nodes.iter().enumerate() {
             node.ends.iter().for_each(|&e| node_of_end[e] = Some(k));
         }
         let mut out = StrokeGraph::default();
-        let kind = |n: &Node| match (n.ends.len(), n.bodies.is_empty()) {
-            (_, false) => JunctionKind::Tee,
-            (1, true) => JunctionKind::FreeEnd,
-            (2, true) => JunctionKind::Corner,
-            _ => JunctionKind::Branch,
-        };
         let indices = nodes.iter().map(|n| out.graph.add_node(Junction::new(n.position, kind(n)))).collect();
-        let trimmed = (0..lines.len()).map(|i| trim(image, &lines[i], i, ends, nodes, &node_of_end));
-        let (lines, shift): (Vec<_>, Vec<_>) = trimmed.unzip();
+        let between =
+            |i: usize| between_nodes(image, lines, i, [0, 1].map(|side| Some(&nodes[node_of_end[end_id(i, side)]?])));
+        let (between, shift): (Vec<Line>, Vec<f64>) = (0..lines.len()).map(between).unzip();
         let cuts = vec![Vec::new(); lines.len()];
-        Self { image, nodes, node_of_end, lines, shift, cuts, indices, out }
+        Self { image, nodes, node_of_end, lines: between.into(), shift, cuts, indices, out }
     }
 
     /// Bodies are cut where lines end at them.
     fn add_tees(&mut self) {
         for (node, &index) in self.nodes.iter().zip(&self.indices) {
             for body in &node.bodies {
-                let last = piece_count(&self.lines[body.line]) as f64;
+                let last = self.lines[body.line].piece_count() as f64;
                 let at = body.at - self.shift[body.line];
                 if self.lines[body.line].closed || (at > 0.0 && at < last) {
                     self.cuts[body.line].push(Cut { at, node: index });
@@ -98,10 +97,9 @@ impl<'a> Assembly<'a> {
     /// Lines are cut where they cross, unless a node is there already.
     fn add_crossings(&mut self) {
         let mut lines = std::mem::take(&mut self.lines);
-        let index = LineIndex::new(&lines);
         let nodes = PointIndex::new(self.nodes.iter().map(|n| n.position).enumerate());
         let mut found: BTreeMap<(usize, usize), Vec<Meeting>> = BTreeMap::new();
-        let crossed = |i: usize| self.crossed(&lines, i, &index);
+        let crossed = |i: usize| self.crossed(&lines, i);
         let crossed: Vec<Meeting> = (0..lines.len()).into_par_iter().flat_map_iter(crossed).collect();
         for (here, place, point) in crossed {
             let known = found.entry((here.line, place.line)).or_default();
@@ -110,26 +108,24 @@ impl<'a> Assembly<'a> {
             }
         }
         for (a, b, position) in found.into_values().flatten() {
-            let sine = direction(&lines, a).cross(direction(&lines, b)).abs();
+            let sine = lines.direction(a).cross(lines.direction(b)).abs();
             // Up to here the inks of the two lines overlap, and a cross profile shows their union.
             let overlap = self.image.line_width / sine.max(LEAST_SINE);
-            for place in [a, b] {
-                blank(&mut lines[place.line], place.at, overlap);
-            }
             let node = self.out.graph.add_node(Junction::new(position, JunctionKind::Crossing));
-            self.cuts[a.line].push(Cut { at: a.at, node });
-            self.cuts[b.line].push(Cut { at: b.at, node });
+            for place in [a, b] {
+                blank(&mut lines.edit()[place.line], place.at, overlap);
+                self.cuts[place.line].push(Cut { at: place.at, node });
+            }
         }
         self.lines = lines;
     }
 
     /// Where a line crosses itself and those after it, along the line.
-    fn crossed(&self, lines: &[Streamline], i: usize, index: &LineIndex) -> Vec<Meeting> {
+    fn crossed(&self, lines: &Lines, i: usize) -> Vec<Meeting> {
         let mut crossed = Vec::new();
         let line = &lines[i];
-        for k in 0..piece_count(line) {
-            let piece = Line::new(line.points[k], line.points[(k + 1) % line.points.len()]);
-            for (place, point, t) in index.crossings(piece) {
+        for k in 0..line.piece_count() {
+            for (place, point, t) in lines.crossings(line.piece(k)) {
                 let here = Place { line: i, at: k as f64 + t };
                 if self.is_crossing(lines, here, place) {
                     crossed.push((here, place, point));
@@ -140,24 +136,24 @@ impl<'a> Assembly<'a> {
     }
 
     /// Each pair once; on one line only between parts that are far apart along it.
-    fn is_crossing(&self, lines: &[Streamline], a: Place, b: Place) -> bool {
+    fn is_crossing(&self, lines: &Lines, a: Place, b: Place) -> bool {
         if a.line != b.line {
             return a.line < b.line;
         }
         let apart = (b.at - a.at).abs();
         let apart = if lines[a.line].closed { apart.min(lines[a.line].points.len() as f64 - apart) } else { apart };
-        a.at < b.at && apart * STEP > 4.0 * self.image.line_width
+        a.at < b.at && apart * STEP > OWN * self.image.line_width
     }
 
     /// Whether a pair of lines crosses again right after a crossing: lines that graze each other.
     fn is_again(&self, known: &[Meeting], a: Place, b: Place) -> bool {
-        let near = |p: Place, q: Place| (p.at - q.at).abs() * STEP < 6.0 * self.image.line_width;
+        let near = |p: Place, q: Place| (p.at - q.at).abs() * STEP < AGAIN * self.image.line_width;
         known.iter().rev().any(|(c, d, _)| near(*c, a) && near(*d, b))
     }
 
     /// Whether both lines share a node here.
     fn is_at_node(&self, nodes: &PointIndex, a: Place, b: Place, point: Point) -> bool {
-        nodes.near(point, 1.2 * self.image.line_width).any(|near| {
+        nodes.near(point, AT_NODE * self.image.line_width).any(|near| {
             let n = &self.nodes[near];
             let has = |line: usize| n.bodies.iter().any(|p| p.line == line) || n.ends.iter().any(|e| e / 2 == line);
             has(a.line) && has(b.line)
@@ -168,7 +164,7 @@ impl<'a> Assembly<'a> {
     fn add_edges(&mut self, i: usize) -> Vec<EdgeIndex> {
         let line = self.lines[i].clone();
         let mut cuts = std::mem::take(&mut self.cuts[i]);
-        let last = piece_count(&line) as f64;
+        let last = line.piece_count() as f64;
         if line.closed {
             if cuts.is_empty() {
                 let seam = Junction::new(line.points[0], JunctionKind::Seam);
@@ -190,7 +186,7 @@ impl<'a> Assembly<'a> {
             .collect()
     }
 
-    fn edge(&self, line: &Streamline, from: Cut, to: Cut) -> Edge {
+    fn edge(&self, line: &Line, from: Cut, to: Cut) -> Edge {
         let n = line.points.len();
         let position = |cut: Cut| self.out.graph[cut.node].position;
         let (mut points, mut widths) = (vec![position(from)], vec![f64::NAN]);
@@ -264,10 +260,19 @@ impl<'a> Assembly<'a> {
     }
 }
 
+/// What meets at a node.
+fn kind(node: &Node) -> JunctionKind {
+    match (node.ends.len(), node.bodies.is_empty()) {
+        (_, false) => JunctionKind::Tee,
+        (1, true) => JunctionKind::FreeEnd,
+        (2, true) => JunctionKind::Corner,
+        _ => JunctionKind::Branch,
+    }
+}
+
 /// Forgets the widths of a line within `reach` pixels along it from a place: there they tell of another line too.
-fn blank(line: &mut Streamline, at: f64, reach: f64) {
-    let indices: Vec<usize> = around(line, at, reach).collect();
-    indices.into_iter().for_each(|k| line.widths[k] = f64::NAN);
+fn blank(line: &mut Line, at: f64, reach: f64) {
+    line.around(at, reach).for_each(|k| line.widths[k] = f64::NAN);
 }
 
 fn length(points: &[Point]) -> f64 {
@@ -276,22 +281,14 @@ fn length(points: &[Point]) -> f64 {
 
 /// A line between its nodes: what lies beyond a node or inside its junction is cut off and the node is put in
 /// its place. Also returns how much indices moved.
-fn trim(
-    image: &LineImage,
-    line: &Streamline,
-    i: usize,
-    ends: &[Option<End>],
-    nodes: &[Node],
-    node_of_end: &[Option<usize>],
-) -> (Streamline, f64) {
-    let (Some(a), Some(b)) = (ends[end_id(i, 0)], ends[end_id(i, 1)]) else {
+fn between_nodes(image: &LineImage, lines: &Lines, i: usize, nodes: [Option<&Node>; 2]) -> (Line, f64) {
+    let (line, ends) = (&lines[i], lines.ends(image));
+    let ([Some(first), Some(last)], [Some(a), Some(b)]) = (nodes, [0, 1].map(|side| ends[end_id(i, side)].as_ref()))
+    else {
         return (line.clone(), 0.0);
     };
-    let node = |side: usize| &nodes[node_of_end[end_id(i, side)].expect("every end has a node")];
-    let (first, last) = (node(0), node(1));
-    let n = line.points.len();
-    let from = kept(image, line, &a, first);
-    let to = (n - 1).saturating_sub(kept(image, line, &b, last));
+    let from = cut_off(image, line, a, first);
+    let to = (line.points.len() - 1).saturating_sub(cut_off(image, line, b, last));
     let (mut points, mut widths) = (vec![first.position], vec![f64::NAN]);
     if to >= from {
         points.extend(&line.points[from..=to]);
@@ -299,35 +296,27 @@ fn trim(
     }
     points.push(last.position);
     widths.push(f64::NAN);
-    (Streamline { points, widths, closed: false, stops: line.stops }, from as f64 - 1.0)
+    (Line { points, widths, closed: false, ends: line.ends }, from as f64 - 1.0)
 }
 
 /// How many points at an end are to go: those beyond the node, and those inside its junction.
-fn kept(image: &LineImage, line: &Streamline, end: &End, node: &Node) -> usize {
-    let n = line.points.len();
-    let at = |k: usize| line.points[if end.side == 0 { k } else { n - 1 - k }];
-    let is_free = node.ends.len() == 1 && node.bodies.is_empty();
-    if is_free && end.stop.is_cut_off() {
+fn cut_off(image: &LineImage, line: &Line, end: &End, node: &Node) -> usize {
+    if node.is_free() && end.state == EndState::CutOff {
         return 1;
     }
     // The place on the last stretch that comes nearest to the node.
-    let tip = if end.side == 0 { end.tip } else { n - 1 - end.tip };
-    let stretch = (tip + (6.0 * end.width / STEP) as usize).min(n - 1);
-    let distance = |k: usize| (at(k) - node.position).hypot();
+    let last = line.points.len() - 1;
+    let stretch = (line.inwards(end.side, end.tip) + (INWARDS * end.width / STEP) as usize).min(last);
+    let distance = |k: usize| (line.at_end(end.side, k) - node.position).hypot();
     let nearest = (0..=stretch).min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
-    let id = end_id(end.line, end.side);
-    let runs_on = node.pairs.iter().any(|p| p.ends.contains(&id) && p.turn < SMOOTH);
+    let runs_on = node.pairs.iter().any(|p| p.ends.contains(&end.id()) && p.turn < SMOOTH);
     // Where a walk took another line's arm, its last points belong to neither.
-    let radius = if end.stop == Stop::Cut {
+    let radius = if end.state == EndState::Parted {
         image.line_width
-    } else if is_free || runs_on {
-        0.6 * STEP
+    } else if node.is_free() || runs_on {
+        AT_POINT
     } else {
         INSIDE * image.line_width
     };
-    let mut k = nearest;
-    while k < n - 1 && distance(k) < radius {
-        k += 1;
-    }
-    k
+    (nearest..last).find(|&k| distance(k) >= radius).unwrap_or(last)
 }

@@ -1,300 +1,75 @@
 //! From streamlines to the stroke graph.
 //!
 //! A streamline runs straight through crossings and, at its ends, over the middle of whatever stopped it up to
-//! the far edge of the ink. Here each end is resolved: against the body of another line it is a tee, against
-//! other ends a corner or a branch, in the open a free end half a width short of the edge. Then arms are paired
-//! into strokes, which end where their colour does (`pens`) and go on behind short breaks in their ink (`gaps`).
+//! the far edge of the ink. Passes repair what the walks could not see ([`REPAIRS`]); each end is resolved, against the
+//! body of another line as a tee, against other ends as a corner or a branch, in the open as a free end half a width short
+//! of the edge; arms are paired into strokes; and passes finish the graph ([`FINISHES`]).
+//!
+//! # Where to find what
+//!
+//! | question | answer |
+//! |---|---|
+//! | Why does a pass run where it does? | `passes`: the table, with a reason for each place |
+//! | Where do two ends become one stroke? | `resolve/pairing`, at a node; `finish/gaps`, over paper; `repair/tangency` and `repair/fork`, in shared ink |
+//! | How is a kind of junction added? | a variant of [`JunctionKind`], set in `assemble`; what meets there is told in `resolve/node`; its mark is in `inspect` and its name in the graph's JSON format |
+//! | How is a situation repaired? | a file in `repair`, which takes lines and edits them, and a row in `passes` |
+//! | What is known of an end? | [`EndState`]: who sets it, and who reads it |
+//! | Why did a drawing lose a stroke? | `--debug-dir` has a picture after each pass that changed something |
+//!
+//! # Words
+//!
+//! ```text
+//!   streamline   what a walk along the field gives: points half a pixel apart
+//!   line         a streamline while it is repaired; it may be cut, led on and joined
+//!   end          the first or the last point of an open line, and what is known of it
+//!   tip          the last point before an end at which the line is alone in its ink, so that its width is known
+//!   course       where a line is heading: place, direction and curvature, from what lies before its tip
+//!   arm          a line as it comes to a place at which others are
+//!   body         a line that passes where another ends
+//!
+//!         ___        body         a stem that        stem ____.--- arm
+//!        /   \     ---------      meets a body:     -------'-----  arm
+//!   ____/_____\__      | stem     a tee
+//!      touch           |                             fork: a line leaves another at a small angle
+//!
+//!   touch        two lines whose inks are one for a while, each going on as it came
+//!   fork         two arms that run into one stem; the straighter one is the stem's line
+//!   cusp         two lines that run into one and end there together, as the humps of a coil: \_/\_/
+//!   passage      a fine line that goes under a broad one and comes out on its other side
+//!   node         a place at which lines end or cross
+//!   edge         a line between two nodes
+//!   trail        edges in a row: one stroke of the pen
+//!   stroke       a trail once it is fitted
+//! ```
+//!
+//! # Constants
+//!
+//! Each lies beside what it decides. Lengths are in widths of the page's line, since all that is decided here scales with the
+//! pen; what is in pixels, for the raster's sake, says so. Angles are in radians; `_COS` is the cosine of one, and directions
+//! within that angle pass. What gives no reason for its value was found by trying, and is guarded by the sweep that the row
+//! of its pass names; of contacts, nodes and pairing by `tests/junctions.rs` and `tests/encounters.rs`.
+//!
+//! # The order of the modules
+//!
+//! `model`, `point_index`, `lines`, `dots`, `pens`, `resolve`, `repair`, `assemble`, `finish`, `passes`, `build`: each uses
+//! only those before it.
 
-mod approach;
 mod assemble;
-mod confidence;
-mod contacts;
-mod course;
-mod cusps;
-mod ends;
-mod forks;
-mod gaps;
-pub(crate) mod layers;
-mod merge;
-mod nodes;
+mod build;
+mod dots;
+mod finish;
+mod lines;
+mod model;
+mod passes;
 mod pens;
 mod point_index;
-mod rejoin;
-mod settle;
-mod swaps;
-mod taper;
-mod touches;
-mod trim;
+mod repair;
+mod resolve;
 
-use crate::cancel::Cancel;
-use crate::clean::LineImage;
-use crate::drawing::{Color, Dashes, Fill};
-use crate::error::Result;
-use crate::options::{Options, StrokeWidth};
-use crate::streamline::Streamline;
-use kurbo::Point;
-use petgraph::stable_graph::{EdgeIndex, StableUnGraph};
-use serde::{Deserialize, Serialize};
-
-pub use confidence::DOUBTFUL;
-
-/// What meets at a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum JunctionKind {
-    /// One line ends in the open.
-    FreeEnd,
-    /// Two lines end at each other.
-    Corner,
-    /// One or more lines end at the body of another.
-    Tee,
-    /// Two lines pass through each other.
-    Crossing,
-    /// Three or more lines end at one point.
-    Branch,
-    /// A closed line's arbitrary first point.
-    Seam,
-    /// The ink ends, and the line goes on behind a gap.
-    Gap,
-}
-
-/// A node of the stroke graph.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Junction {
-    /// Where the arms meet, in pixels of the line image.
-    pub position: Point,
-    /// What meets here.
-    pub kind: JunctionKind,
-    /// How sure place and pairing are, from 0 to 1: how nearly the arms' extensions meet here, times how much worse
-    /// the next best way of pairing them would be. A free end is as sure as the paper around it is wide.
-    pub confidence: f64,
-}
-
-impl Junction {
-    /// A node that nothing speaks against.
-    pub fn new(position: Point, kind: JunctionKind) -> Self {
-        Self { position, kind, confidence: 1.0 }
-    }
-}
-
-/// An edge of the stroke graph: a piece of line between two nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Edge {
-    /// Points from the edge's source node to its target node, both included.
-    pub points: Vec<Point>,
-    /// Ink width at each point in pixels; NaN where it cannot be measured.
-    pub widths: Vec<f64>,
-    /// Standard deviation of the ink's edge about a smooth line, in pixels: how far the ink can be trusted.
-    pub noise: f64,
-}
-
-/// A stroke: a walk through the graph.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Trail {
-    /// The edges in order; `true` walks an edge from its target to its source.
-    pub edges: Vec<(EdgeIndex, bool)>,
-    /// Whether the walk ends where it started.
-    pub closed: bool,
-    /// Ink colour.
-    pub color: Color,
-    /// The pattern of a dashed line, in pixels of the line image.
-    pub dashes: Option<Dashes>,
-}
-
-impl Trail {
-    /// Goes on along another trail, from its end if `backwards`.
-    fn append(&mut self, other: &Self, backwards: bool) {
-        if backwards {
-            self.edges.extend(other.edges.iter().rev().map(|&(edge, reversed)| (edge, !reversed)));
-        } else {
-            self.edges.extend(&other.edges);
-        }
-    }
-}
-
-/// A blob of about a line width in both directions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dot {
-    /// Its centre, in pixels of the line image.
-    pub centre: Point,
-    /// Its diameter, in pixels of the line image.
-    pub diameter: f64,
-    /// Ink colour.
-    pub color: Color,
-}
-
-/// The page that a graph was traced from, as far as fitting has to know it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Page {
-    /// Width of the scan in pixels.
-    pub width: f64,
-    /// Height of the scan in pixels.
-    pub height: f64,
-    /// Dots per inch of the scan, where known.
-    pub dpi: Option<f64>,
-    /// Pixels of the line image per pixel of the scan.
-    pub scale: f64,
-    /// Typical line width in pixels of the line image.
-    pub line_width: f64,
-    /// Standard deviation of the blur of the lines in pixels of the line image.
-    pub blur: f64,
-}
-
-impl Default for Page {
-    /// A page of no size with lines one pixel wide.
-    fn default() -> Self {
-        Self { width: 0.0, height: 0.0, dpi: None, scale: 1.0, line_width: 1.0, blur: 0.0 }
-    }
-}
-
-impl Page {
-    /// The page of a line image; its resolution is not known there.
-    fn of(image: &LineImage) -> Self {
-        let side = |pixels: usize| pixels as f64 / image.scale;
-        let (width, height) = (side(image.ink.width()), side(image.ink.height()));
-        Self { width, height, dpi: None, scale: image.scale, line_width: image.line_width, blur: image.blur }
-    }
-}
-
-/// The topology of a drawing, with all that fitting takes.
-#[derive(Clone, Debug, Default)]
-pub struct StrokeGraph {
-    /// The page.
-    pub page: Page,
-    /// Nodes and edges.
-    pub graph: StableUnGraph<Junction, Edge>,
-    /// The strokes; every edge belongs to exactly one.
-    pub trails: Vec<Trail>,
-    /// Dots.
-    pub dots: Vec<Dot>,
-    /// Outlines of solid regions, straight from point to point, in pixels of the line image.
-    pub fills: Vec<Fill>,
-}
-
-impl StrokeGraph {
-    /// Shares of a trail's length halfway between two visits of one node: there the trail can be parted so that no
-    /// part crosses itself.
-    pub(crate) fn revisits(&self, trail: &Trail) -> Vec<f64> {
-        let mut visits: Vec<(petgraph::graph::NodeIndex, f64)> = Vec::new();
-        let mut walked = 0.0;
-        for &(edge, reversed) in &trail.edges {
-            let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
-                continue;
-            };
-            if visits.is_empty() {
-                visits.push((if reversed { b } else { a }, 0.0));
-            }
-            walked += e.points.windows(2).map(|p| (p[1] - p[0]).hypot()).sum::<f64>();
-            visits.push((if reversed { a } else { b }, walked));
-        }
-        let mut breaks = Vec::new();
-        for (j, &(node, at)) in visits.iter().enumerate() {
-            let before = visits[..j].iter().rposition(|v| v.0 == node);
-            // That a closed trail comes home is no crossing.
-            let home = |i: usize| trail.closed && i == 0 && j + 1 == visits.len();
-            if let Some(i) = before.filter(|&i| !home(i)) {
-                breaks.push(0.5 * (visits[i].1 + at) / walked.max(1e-9));
-            }
-        }
-        breaks
-    }
-
-    /// Points and widths along a trail, and whether each point is a corner: a node at which two lines end.
-    pub(crate) fn walk(&self, trail: &Trail) -> Vec<TrailPoint> {
-        let mut walk: Vec<TrailPoint> = Vec::new();
-        for &(edge, reversed) in &trail.edges {
-            let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
-                continue;
-            };
-            let point = |(&point, &width)| TrailPoint { point, width, noise: e.noise, corner: false };
-            let mut piece: Vec<TrailPoint> = e.points.iter().zip(&e.widths).map(point).collect();
-            let corner = |node: petgraph::graph::NodeIndex| {
-                matches!(self.graph[node].kind, JunctionKind::Corner | JunctionKind::Branch)
-            };
-            if let [first, .., last] = piece.as_mut_slice() {
-                (first.corner, last.corner) = (corner(a), corner(b));
-            }
-            if reversed {
-                piece.reverse();
-            }
-            // The node is the last point of one edge and the first of the next.
-            let skip = usize::from(!walk.is_empty());
-            walk.extend(piece.into_iter().skip(skip));
-        }
-        walk
-    }
-}
-
-/// A point along a trail.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TrailPoint {
-    pub point: Point,
-    /// Ink width in pixels; NaN where it cannot be measured.
-    pub width: f64,
-    /// Standard deviation of the ink's edge about a smooth line, in pixels.
-    pub noise: f64,
-    /// Whether the line may turn sharply here.
-    pub corner: bool,
-}
-
-/// Builds the stroke graph.
-///
-/// # Errors
-/// The token's.
-pub fn build(image: &LineImage, streamlines: &[Streamline], options: &Options, cancel: &Cancel) -> Result<StrokeGraph> {
-    let (mut dots, mut lines) = ends::split_dots(image, streamlines);
-    trim::trim(image, &mut lines);
-    settle::settle(image, &mut lines);
-    touches::part(image, &mut lines);
-    cusps::sharpen(image, &mut lines);
-    forks::straighten(image, &mut lines);
-    let pens = pens::Pens::of(image, &lines, &dots);
-    if let Some(pens) = &pens {
-        lines = rejoin::cut_lines(&lines, &pens.changes(&lines));
-        dots.iter_mut().for_each(|dot| dot.color = pens.of_dot(dot));
-    }
-    merge::merge(image, &mut lines);
-    let swaps = swaps::cuts(image, &lines);
-    if !swaps.is_empty() {
-        lines = rejoin::cut_lines(&lines, &swaps);
-    }
-    let mut resolved = Resolved::new(image, &lines, cancel)?;
-    let cuts = rejoin::cuts(image, &lines, &resolved.ends, &resolved.nodes);
-    if !cuts.is_empty() {
-        lines = rejoin::cut_lines(&lines, &cuts);
-        resolved = Resolved::new(image, &lines, cancel)?;
-    }
-    let mut graph = assemble::assemble(image, &lines, &resolved.ends, &resolved.nodes, options);
-    graph.page = Page::of(image);
-    graph.dots = dots;
-    graph.fills = image.solids.clone();
-    if let Some(pens) = &pens {
-        pens.paint(&mut graph);
-    }
-    if options.width == StrokeWidth::Outline {
-        taper::measure(image, &mut graph);
-    }
-    gaps::bridge(image, &mut graph, options);
-    confidence::rate(&mut graph);
-    cancel.check()?;
-    Ok(graph)
-}
-
-/// Lines with their ends resolved.
-struct Resolved {
-    ends: Vec<Option<ends::End>>,
-    nodes: Vec<nodes::Node>,
-}
-
-impl Resolved {
-    fn new(image: &LineImage, lines: &[Streamline], cancel: &Cancel) -> Result<Self> {
-        cancel.check()?;
-        let ends = ends::ends(image, lines);
-        cancel.check()?;
-        let contacts = contacts::contacts(image, lines, &ends);
-        cancel.check()?;
-        let nodes = nodes::resolve(image, lines, &ends, &contacts);
-        cancel.check()?;
-        Ok(Self { ends, nodes })
-    }
-}
+pub use build::{Ran, Watch, Work, build};
+pub use finish::DOUBTFUL;
+pub(crate) use finish::join_layers;
+pub use lines::{EndState, Line};
+pub(crate) use model::TrailPoint;
+pub use model::{Dot, Edge, Junction, JunctionKind, Page, StrokeGraph, Trail};
+pub use passes::{FINISHES, Pass, Passes, REPAIRS, When, all as passes};

@@ -4,12 +4,12 @@
 //! its full ink: an edge, a blur or a line thinner than a pixel shows less of it. Lines are cut where their colour changes
 //! for good, and strokes end there.
 
-use super::contacts::Place;
+use super::lines::{Line, Place};
 use super::{Dot, StrokeGraph, Trail};
 use crate::clean::{JOINING, LineImage, profile_at, unblurred_width};
 use crate::drawing::{Color, Fill};
 use crate::raster::Raster;
-use crate::streamline::{STEP, Streamline};
+use crate::streamline::STEP;
 use kurbo::{Point, Shape, Vec2};
 use petgraph::stable_graph::EdgeIndex;
 use std::collections::{BTreeMap, BTreeSet};
@@ -61,7 +61,7 @@ pub(super) struct Pens<'a> {
 
 impl<'a> Pens<'a> {
     /// The pens of a page; `None` when nothing is known of its colours.
-    pub fn of(image: &'a LineImage, lines: &[Streamline], dots: &[Dot]) -> Option<Self> {
+    pub fn of(image: &'a LineImage, lines: &[Line], dots: &[Dot]) -> Option<Self> {
         let colors = image.colors.as_ref()?;
         let mut pens = Self { image, colors, pens: Vec::new() };
         let of_lines = lines.iter().flat_map(|line| pens.along(&line.points, &line.widths).into_iter().flatten());
@@ -209,7 +209,7 @@ impl<'a> Pens<'a> {
     }
 
     /// The places at which the colour of a line changes for good.
-    pub fn changes(&self, lines: &[Streamline]) -> Vec<Place> {
+    pub fn changes(&self, lines: &[Line]) -> Vec<Place> {
         let mut places = Vec::new();
         for (i, line) in lines.iter().enumerate() {
             let pens = self.of_points(&line.points, &line.widths);
@@ -231,12 +231,16 @@ impl<'a> Pens<'a> {
     }
 
     /// The colour of a dot.
-    pub fn of_dot(&self, dot: &Dot) -> Color {
+    fn of_dot(&self, dot: &Dot) -> Color {
         self.of_centre(dot).map_or(Color::BLACK, |reading| self.pens[self.pen(reading.color)])
     }
 
-    /// Gives strokes and regions their pens' colours; strokes are split where edges of two pens follow one another.
-    pub fn paint(&self, graph: &mut StrokeGraph) {
+    /// Gives dots, strokes and regions their pens' colours; strokes are split where edges of two pens follow one another.
+    /// Returns how many strokes are in colour.
+    pub fn paint(&self, graph: &mut StrokeGraph) -> usize {
+        for dot in &mut graph.dots {
+            dot.color = self.of_dot(dot);
+        }
         for fill in &mut graph.fills {
             fill.color = self.inside(fill).map_or(Color::BLACK, |color| self.of_fill(color));
         }
@@ -250,6 +254,7 @@ impl<'a> Pens<'a> {
             .collect();
         let trails = std::mem::take(&mut graph.trails);
         graph.trails = trails.into_iter().flat_map(|trail| self.split(trail, &pens)).collect();
+        graph.trails.iter().filter(|trail| trail.color != Color::BLACK).count()
     }
 
     /// A trail as one for each run of edges of one pen; an edge of no colour of its own goes with the one before it.

@@ -1,11 +1,11 @@
 //! An observer that writes a picture of each stage.
 
-use super::{drawing_overlay, field_overlay, graph_overlay, ink_picture, streamlines_overlay, to_png};
+use super::{drawing_overlay, field_overlay, graph_overlay, ink_picture, lines_overlay, streamlines_overlay, to_png};
 use crate::clean::LineImage;
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
 use crate::field::PolyVectorField;
-use crate::graph::StrokeGraph;
+use crate::graph::{Line, Pass, Ran, StrokeGraph, passes};
 use crate::hooks::Observer;
 use crate::load::Scan;
 use crate::streamline::Streamline;
@@ -15,12 +15,17 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// Writes `1-ink.png` and, each as `.svg` and `.png`, `2-field`, `3-streamlines`, `4-graph` and
-/// `5-strokes` to a folder as a trace goes on. Changes nothing.
+/// `5-strokes` to a folder as a trace goes on, and for each pass of the graph that changed something `4-NUMBER-PASS`, with
+/// `-broad` after it for the lines that are traced apart from the others. Changes nothing.
 #[derive(Debug)]
 pub struct DebugDir<'a> {
     folder: PathBuf,
     scan: &'a Scan,
     streamlines: Vec<Streamline>,
+    /// The lines of the image that is traced now, before the next pass.
+    lines: Vec<Line>,
+    /// Whether broad lines are traced apart.
+    has_broad: bool,
 }
 
 impl<'a> DebugDir<'a> {
@@ -30,17 +35,24 @@ impl<'a> DebugDir<'a> {
     /// [`Error::Write`] when the folder cannot be made.
     pub fn create(folder: &Path, scan: &'a Scan) -> Result<Self> {
         std::fs::create_dir_all(folder).map_err(|cause| Error::Write { path: folder.to_owned(), cause })?;
-        Ok(Self { folder: folder.to_owned(), scan, streamlines: Vec::new() })
+        Ok(Self { folder: folder.to_owned(), scan, streamlines: Vec::new(), lines: Vec::new(), has_broad: false })
     }
 
     fn write(&self, name: &str, svg: &str) -> Result<()> {
         write_file(&self.folder.join(format!("{name}.svg")), svg.as_bytes())?;
         write_file(&self.folder.join(format!("{name}.png")), &to_png(svg)?)
     }
+
+    fn write_pass(&self, image: &LineImage, pass: &Pass, svg: &str) -> Result<()> {
+        let number = passes().position(|p| p.name == pass.name).map_or(0, |k| k + 1);
+        let layer = if self.has_broad && image.broad.is_none() { "-broad" } else { "" };
+        self.write(&format!("4-{number:02}-{}{layer}", pass.name.replace(' ', "-")), svg)
+    }
 }
 
 impl Observer for DebugDir<'_> {
     fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
+        self.has_broad = image.broad.is_some();
         let mut png = Cursor::new(Vec::new());
         let path = self.folder.join("1-ink.png");
         let encoded = ink_picture(image).write_to(&mut png, ImageFormat::Png);
@@ -49,14 +61,31 @@ impl Observer for DebugDir<'_> {
     }
 
     fn on_field(&mut self, _image: &LineImage, field: &mut PolyVectorField) -> Result<()> {
+        self.lines.clear();
         self.write("2-field", &field_overlay(self.scan, field))
     }
 
     fn on_streamline(&mut self, image: &LineImage, streamline: &mut Streamline) -> Result<bool> {
+        self.lines.push(Line::from(&*streamline));
         let mut in_scan = streamline.clone();
         in_scan.points.iter_mut().for_each(|p| *p = (p.to_vec2() / image.scale).to_point());
         self.streamlines.push(in_scan);
         Ok(true)
+    }
+
+    fn on_lines(&mut self, image: &LineImage, ran: &Ran, lines: &[Line]) -> Result<()> {
+        let before = std::mem::replace(&mut self.lines, lines.to_vec());
+        if ran.changes == 0 {
+            return Ok(());
+        }
+        self.write_pass(image, ran.pass, &lines_overlay(self.scan, image.scale, &before, lines))
+    }
+
+    fn on_finish(&mut self, image: &LineImage, ran: &Ran, graph: &StrokeGraph) -> Result<()> {
+        if ran.changes == 0 {
+            return Ok(());
+        }
+        self.write_pass(image, ran.pass, &graph_overlay(self.scan, image.scale, graph))
     }
 
     fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {

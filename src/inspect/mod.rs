@@ -7,6 +7,7 @@ mod comparison;
 mod debug_dir;
 mod field;
 mod graph;
+mod lines;
 mod overlay;
 mod strokes;
 
@@ -14,5 +15,6 @@ pub use comparison::comparison_overlay;
 pub use debug_dir::DebugDir;
 pub use field::{field_overlay, ink_picture};
 pub use graph::{graph_overlay, streamlines_overlay};
+pub use lines::lines_overlay;
 pub use overlay::to_png;
 pub use strokes::drawing_overlay;

@@ -42,19 +42,6 @@ pub enum Stop {
     Border,
     /// The line ran into a solid region.
     Solid,
-    /// It was cut at a junction because it had taken another line's arm.
-    Cut,
-    /// The pen was lifted here: there is paper between this line and the next.
-    Settled,
-    /// It meets another line at its last point, at a small angle or none.
-    Joined,
-}
-
-impl Stop {
-    /// Whether the line itself goes on, out of the image or under a solid region: there its end is no pen's end.
-    pub(crate) fn is_cut_off(self) -> bool {
-        matches!(self, Self::Border | Self::Solid)
-    }
 }
 
 /// A traced centreline: points about half a pixel apart.
@@ -71,13 +58,6 @@ pub struct Streamline {
 }
 
 impl Streamline {
-    /// The same line from its other end.
-    pub(crate) fn reverse(&mut self) {
-        self.points.reverse();
-        self.widths.reverse();
-        self.stops.reverse();
-    }
-
     /// Checks what the later stages rely on, after somebody else may have changed it.
     ///
     /// # Errors

@@ -190,5 +190,15 @@ pub fn rendered(drawing: &Drawing) -> Scan {
 
 /// The trace of a scan under the default options.
 pub fn trace(scan: &Scan) -> Drawing {
-    Vectorizer::new(Options::default()).expect("the defaults are in range").trace(scan).expect("a trace")
+    trace_under(Options::default(), scan)
+}
+
+/// The trace of a scan under some options, without the passes that `FIELDTRACE_WITHOUT` names, with commas between them: so
+/// it is found which tests guard a pass.
+pub fn trace_under(options: Options, scan: &Scan) -> Drawing {
+    let all = Vectorizer::new(options).expect("options in their range");
+    let names = std::env::var("FIELDTRACE_WITHOUT").unwrap_or_default();
+    let names = names.split(',').filter(|name| !name.is_empty());
+    let vectorizer = names.fold(all, |vectorizer, name| vectorizer.without(name).expect("the name of a pass"));
+    vectorizer.trace(scan).expect("a trace")
 }

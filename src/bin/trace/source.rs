@@ -8,7 +8,8 @@ use fieldtrace::unet::{Backend, Weights};
 
 /// What traces under the options and with the estimator that were asked for.
 pub(crate) fn vectorizer(source: &FieldSourceArgs, clean: &CleanArgs, fit: Option<&FitArgs>) -> Result<Vectorizer> {
-    Vectorizer::with(args::options(clean, fit), estimator(source.estimator, &source.network)?)
+    let all = Vectorizer::with(args::options(clean, fit), estimator(source.estimator, &source.network)?)?;
+    fit.iter().flat_map(|fit| &fit.without).try_fold(all, |vectorizer, pass| vectorizer.without(pass))
 }
 
 /// The estimator that was asked for.

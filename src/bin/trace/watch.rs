@@ -4,12 +4,12 @@ use fieldtrace::clean::{Decisions, LineImage, Noise, NoiseMap};
 use fieldtrace::drawing::Drawing;
 use fieldtrace::error::Result;
 use fieldtrace::field::PolyVectorField;
-use fieldtrace::graph::StrokeGraph;
+use fieldtrace::graph::{Line, Ran, StrokeGraph};
 use fieldtrace::hooks::Observer;
 use fieldtrace::inspect::DebugDir;
 use fieldtrace::streamline::Streamline;
 use std::collections::BTreeMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Seconds and counts of the stages so far, printed where the user asked for it.
 pub(crate) struct Stages {
@@ -38,9 +38,9 @@ impl Stages {
         }
     }
 
-    /// Takes what was done since the last stage out of the next one.
-    fn skip(&mut self) {
-        self.since = Instant::now();
+    /// Takes a time that was just spent out of the stage.
+    fn leave_out(&mut self, time: Duration) {
+        self.since += time;
     }
 }
 
@@ -95,8 +95,9 @@ pub(crate) struct Watch<'a> {
 impl Watch<'_> {
     /// Has the stage drawn, off the clock.
     fn draw(&mut self, stage: impl FnOnce(&mut DebugDir) -> Result<()>) -> Result<()> {
+        let start = Instant::now();
         let drawn = self.debug.as_mut().map_or(Ok(()), stage);
-        self.stages.skip();
+        self.stages.leave_out(start.elapsed());
         drawn
     }
 }
@@ -132,6 +133,16 @@ impl Observer for Watch<'_> {
             debug.on_streamline(image, streamline)?;
         }
         Ok(true)
+    }
+
+    fn on_lines(&mut self, image: &LineImage, ran: &Ran, lines: &[Line]) -> Result<()> {
+        self.stages.tell(ran.pass.name, || format!("{} changed in {:.3} s", ran.changes, ran.seconds));
+        self.draw(|debug| debug.on_lines(image, ran, lines))
+    }
+
+    fn on_finish(&mut self, image: &LineImage, ran: &Ran, graph: &StrokeGraph) -> Result<()> {
+        self.stages.tell(ran.pass.name, || format!("{} changed in {:.3} s", ran.changes, ran.seconds));
+        self.draw(|debug| debug.on_finish(image, ran, graph))
     }
 
     fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {

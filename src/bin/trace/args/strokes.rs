@@ -44,6 +44,9 @@ pub(crate) struct FitArgs {
     /// Dashes at even distances: `keep` each as a stroke, or `join` them into a dashed one [default: keep]
     #[arg(long, value_name = "WHAT", value_parser = parse_dashes)]
     dashes: Option<Dashing>,
+    /// Leave out a pass between streamlines and graph, by its name
+    #[arg(long, value_name = "PASS", hide = true)]
+    pub(crate) without: Vec<String>,
 }
 
 /// Line widths of paper, or `None` for `auto`.

@@ -7,8 +7,8 @@
 //! The confidence is the product. A free end may have been meant to touch what it ends near; it is as sure as the
 //! paper between is wide.
 
-use super::nodes::{arm_line, continuation};
-use super::{JunctionKind, StrokeGraph};
+use crate::graph::lines::{arm_line, continuation};
+use crate::graph::{JunctionKind, StrokeGraph};
 use crate::streamline::{STEP, Tail};
 use kurbo::Point;
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
@@ -40,8 +40,8 @@ struct Arm {
     tail: Tail,
 }
 
-/// Sets the confidence of every node.
-pub(super) fn rate(graph: &mut StrokeGraph) {
+/// Sets the confidence of every node. Returns how many are doubtful.
+pub(in crate::graph) fn rate(graph: &mut StrokeGraph) -> usize {
     let (points, links) = (points_of_edges(graph), links(graph));
     let nodes: Vec<NodeIndex> = graph.graph.node_indices().collect();
     let ratings: Vec<(NodeIndex, f64)> = nodes
@@ -59,6 +59,7 @@ pub(super) fn rate(graph: &mut StrokeGraph) {
     for (node, confidence) in ratings {
         graph.graph[node].confidence = confidence;
     }
+    graph.graph.node_weights().filter(|node| node.confidence < DOUBTFUL).count()
 }
 
 pub(super) type PointsOfEdges = RTree<GeomWithData<[f64; 2], EdgeIndex>>;

@@ -2,14 +2,12 @@
 //!
 //! Long before two inks part, a walk cannot tell the one from the other: it goes on along either, or ends in the crotch
 //! between them. The walks that come after it, back from the arms, stop at its ink. Here, of the arms of each such fork
-//! the one that best continues the stem is joined to it, so that the other is what leaves ([`super::merge`]).
+//! the one that best continues the stem is joined to it, so that the other is what leaves ([`super::tangent_end`]).
 
-use super::contacts::{LineIndex, Place, direction};
-use super::course::{THIN, bridge, course, departure, run};
-use super::ends::{End, ends};
-use super::merge::bodies;
+use super::tangent_end::bodies;
 use crate::clean::LineImage;
-use crate::streamline::{STEP, Stop, Streamline, Tail};
+use crate::graph::lines::{End, EndState, Line, Lines, Place, THIN, bridge, course, departure};
+use crate::streamline::{STEP, Tail};
 use rayon::prelude::*;
 
 /// A body is looked for within this many line widths of an end.
@@ -42,39 +40,40 @@ struct Fork {
     turn: f64,
 }
 
-/// Joins the straightest arm of every fork to its stem.
-pub(super) fn straighten(image: &LineImage, lines: &mut Vec<Streamline>) {
+/// Joins the straightest arm of every fork to its stem. Returns how many there are.
+pub(in crate::graph) fn straighten(image: &LineImage, lines: &mut Lines) -> usize {
+    let mut joined = 0;
     for _ in 0..ROUNDS {
         let mut forks = forks(image, lines);
         if forks.is_empty() {
-            return;
+            break;
         }
         forks.sort_by(|a, b| a.turn.total_cmp(&b.turn).then((a.line, a.side).cmp(&(b.line, b.side))));
         let mut taken = vec![false; lines.len()];
         for fork in forks {
             if !taken[fork.line] && !taken[fork.body.line] {
                 (taken[fork.line], taken[fork.body.line]) = (true, true);
-                fork.apply(image, lines);
+                fork.apply(image, lines.edit());
+                joined += 1;
             }
         }
-        lines.retain(|line| !line.points.is_empty());
+        lines.edit().retain(|line| !line.points.is_empty());
     }
+    joined
 }
 
 /// The ends of lines that go on in the stem of a fork.
-fn forks(image: &LineImage, lines: &[Streamline]) -> Vec<Fork> {
-    if !lines.iter().any(|line| line.stops.contains(&Stop::Merged)) {
+fn forks(image: &LineImage, lines: &Lines) -> Vec<Fork> {
+    if !lines.iter().any(|line| line.ends.contains(&EndState::RanIn)) {
         return Vec::new();
     }
-    let index = LineIndex::new(lines);
-    let ends = ends(image, lines);
-    let merged = |end: &&End| end.stop == Stop::Merged;
+    let ran_in = |end: &&End| end.state == EndState::RanIn;
     let fork = |end: &End| {
-        let bodies = bodies(lines, &index, end, NEAR * image.line_width);
+        let bodies = bodies(lines, end, NEAR * image.line_width);
         let forks = bodies.into_iter().filter_map(|body| fork(image, lines, end, body));
         forks.min_by(|a, b| a.turn.total_cmp(&b.turn))
     };
-    let all: Vec<Fork> = ends.par_iter().filter_map(|end| fork(end.as_ref().filter(merged)?)).collect();
+    let all: Vec<Fork> = lines.ends(image).par_iter().flatten().filter(ran_in).filter_map(fork).collect();
     // A single line that runs into the end of another is met there.
     let meet = |a: &Fork, b: &Fork| (a.body.line, a.forward) == (b.body.line, b.forward);
     let count = |fork: &Fork| all.iter().filter(|other| !other.has_arm && meet(fork, other)).count();
@@ -83,24 +82,24 @@ fn forks(image: &LineImage, lines: &[Streamline]) -> Vec<Fork> {
 }
 
 /// The fork of a body at which an end lies, if the end goes on in the stem.
-fn fork(image: &LineImage, lines: &[Streamline], end: &End, body: Place) -> Option<Fork> {
+fn fork(image: &LineImage, lines: &Lines, end: &End, body: Place) -> Option<Fork> {
     let line = &lines[body.line];
     if line.closed {
         return None;
     }
     let lw = image.line_width.max(THIN);
-    let forward = direction(lines, body).dot(end.tail.heading) > 0.0;
+    let forward = lines.direction(body).dot(end.tail.heading) > 0.0;
     let (at, step) = (body.at.round() as i64, if forward { 1 } else { -1 });
-    let own = run(&lines[end.line], end.tip as i64, if end.side == 0 { 1 } else { -1 }, 0.0, OVER * lw);
+    let own = lines[end.line].run(end.tip as i64, if end.side == 0 { 1 } else { -1 }, 0.0, OVER * lw);
     let tail = course(&lines[end.line], &own)?;
-    let stem = course(line, &run(line, at, step, AWAY * lw, OVER * lw))?;
+    let stem = course(line, &line.run(at, step, AWAY * lw, OVER * lw))?;
     let turn = departure(&tail, &stem);
     if turn > STRAIGHT {
         return None;
     }
-    let ahead = run(line, at, -step, 0.0, (APART + OVER) * lw);
+    let ahead = line.run(at, -step, 0.0, (APART + OVER) * lw);
     let lasting = ((LASTING * lw / STEP) as usize).max(1);
-    let alone = ahead.windows(lasting).position(|w| w.iter().all(|&k| line.widths[k].is_finite()));
+    let alone = ahead.windows(lasting).position(|w| w.iter().all(|&k| line.is_alone(k)));
     let arm = alone.and_then(|alone| {
         let count = (OVER * lw / STEP) as usize;
         course(line, &ahead[alone..ahead.len().min(alone + count)])
@@ -114,42 +113,25 @@ fn fork(image: &LineImage, lines: &[Streamline], end: &End, body: Place) -> Opti
 
 impl Fork {
     /// Leads the end's line into the stem; the body keeps its arm, which ends at the fork.
-    fn apply(self, image: &LineImage, lines: &mut [Streamline]) {
-        let mut end = std::mem::replace(&mut lines[self.line], empty());
-        let mut body = std::mem::replace(&mut lines[self.body.line], empty());
-        let at = self.body.at.round() as usize;
+    fn apply(self, image: &LineImage, lines: &mut [Line]) {
         // The end's line towards the fork, the stem away from it.
-        let tip = if self.side == 0 { end.points.len() - 1 - self.tip } else { self.tip };
-        if self.side == 0 {
-            end.reverse();
-        }
-        let from = if self.forward { at } else { body.points.len() - 1 - at };
-        if !self.forward {
-            body.reverse();
-        }
-        let away = (from + (AWAY * image.line_width.max(THIN) / STEP) as usize).min(body.points.len() - 1);
+        let end = std::mem::take(&mut lines[self.line]);
+        let tip = end.inwards(1 - self.side, self.tip);
+        let end = end.oriented(1 - self.side);
+        let body = std::mem::take(&mut lines[self.body.line]);
+        let side = usize::from(!self.forward);
+        let from = body.inwards(side, self.body.at.round() as usize);
+        let body = body.oriented(side);
+        let last = body.points.len() - 1;
+        let away = (from + (AWAY * image.line_width.max(THIN) / STEP) as usize).min(last);
+        let stem = body.part(away..=last, body.ends);
+        let mut joined = end.part(0..=tip, end.ends);
         let tail = Tail { point: end.points[tip], ..self.tail };
-        let bridge = bridge(&tail, &Tail { point: body.points[away], ..self.stem });
-        let mut joined = Streamline {
-            points: end.points[..=tip].to_vec(),
-            widths: end.widths[..=tip].to_vec(),
-            closed: false,
-            stops: [end.stops[0], body.stops[1]],
-        };
-        joined.widths.resize(joined.points.len() + bridge.len(), f64::NAN);
-        joined.points.extend(bridge);
-        joined.points.extend(&body.points[away..]);
-        joined.widths.extend(&body.widths[away..]);
+        joined.lead_on(bridge(&tail, &Tail { point: stem.points[0], ..self.stem }));
+        joined.append(stem);
         lines[self.line] = joined;
         if self.has_arm {
-            let stops = [body.stops[0], Stop::Merged];
-            body.points.truncate(from);
-            body.widths.truncate(from);
-            lines[self.body.line] = Streamline { stops, ..body };
+            lines[self.body.line] = body.part(0..from, [body.ends[0], EndState::RanIn]);
         }
     }
-}
-
-fn empty() -> Streamline {
-    Streamline { points: Vec::new(), widths: Vec::new(), closed: false, stops: [Stop::Cut; 2] }
 }

@@ -3,13 +3,12 @@
 //! Long before such a cusp the two inks are one, and what shows of the lines bends towards its axis. Drawn straight on,
 //! they would meet too early, in a corner, and leave the tip bare.
 
-use super::course::{Ending, bridge, course, run};
-use super::ends::{End, ends};
-use super::nodes::{arm_line, free_end};
-use super::point_index::PointIndex;
 use crate::clean::LineImage;
+use crate::graph::lines::{End, EndState, Lead, Lines, arm_line, bridge, course};
+use crate::graph::point_index::PointIndex;
+use crate::graph::resolve::free_end;
 use crate::profile::cross_profile;
-use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
+use crate::streamline::{STEP, Tail, angle_between};
 use kurbo::{Point, Vec2};
 use std::iter;
 
@@ -21,7 +20,7 @@ const WIDEST: f64 = 1.35;
 /// Both lines, bent on as they are, come by the tip within so many line widths, and within this cosine's angle (35 degrees)
 /// of one another.
 const BESIDE: f64 = 0.6;
-const ALONG: f64 = 0.82;
+const ALONG_COS: f64 = 0.82;
 /// Each shows where it is so many line widths apart from the other; its course is that over so many.
 const APART: f64 = 1.15;
 const OVER: f64 = 3.0;
@@ -32,29 +31,30 @@ const LEAST_BEND: f64 = 0.02;
 /// Ink that both run through.
 const INKED: f32 = 0.4;
 
-/// Leads both lines of every cusp to its tip.
-pub(super) fn sharpen(image: &LineImage, lines: &mut [Streamline]) {
-    let ends: Vec<End> = ends(image, lines).into_iter().flatten().collect();
+/// Leads both lines of every cusp to its tip. Returns how many ends were led.
+pub(in crate::graph) fn sharpen(image: &LineImage, lines: &mut Lines) -> usize {
+    let ends: Vec<End> = lines.ends(image).iter().flatten().copied().collect();
     let index = PointIndex::new(ends.iter().map(|end| end.point).enumerate());
     let mut taken = vec![false; ends.len()];
-    for (i, end) in ends.iter().enumerate().filter(|(_, end)| end.stop == Stop::InkEnd) {
+    for (i, end) in ends.iter().enumerate().filter(|(_, end)| end.state == EndState::Open) {
         if taken[i] {
             continue;
         }
         let tip = free_end(image, lines, end);
         let others = index.near(end.point, LONGEST * image.line_width).filter(|&j| j != i && !taken[j]);
         let cusps = others.filter_map(|j| Some((j, cusp(image, lines, [end, &ends[j]], tip)?)));
-        let Some((j, endings)) = cusps.min_by_key(|(j, _)| *j) else { continue };
+        let Some((j, leads)) = cusps.min_by_key(|(j, _)| *j) else { continue };
         (taken[i], taken[j]) = (true, true);
-        for (end, ending) in [end, &ends[j]].into_iter().zip(endings) {
-            ending.apply(&mut lines[end.line], end.side);
+        for (end, lead) in [end, &ends[j]].into_iter().zip(leads) {
+            lines.lead(end.line, end.side, lead);
         }
     }
+    taken.into_iter().filter(|&taken| taken).count()
 }
 
 /// How two lines end at a cusp, of which the first reaches the end of the ink, at `tip`.
-fn cusp(image: &LineImage, lines: &[Streamline], [a, b]: [&End; 2], tip: Point) -> Option<[Ending; 2]> {
-    if !matches!(b.stop, Stop::InkEnd | Stop::Merged) {
+fn cusp(image: &LineImage, lines: &Lines, [a, b]: [&End; 2], tip: Point) -> Option<[Lead; 2]> {
+    if !matches!(b.state, EndState::Open | EndState::RanIn) {
         return None;
     }
     let lw = image.line_width;
@@ -65,7 +65,7 @@ fn cusp(image: &LineImage, lines: &[Streamline], [a, b]: [&End; 2], tip: Point) 
     }
     let there = arms.each_ref().map(|arm| arm_line(&arm.tail, tip, lw));
     let passes = |(point, heading): &(Point, Vec2)| heading.cross(tip - *point).abs() < BESIDE * a.width;
-    if !there.iter().all(passes) || there[0].1.dot(there[1].1) < ALONG {
+    if !there.iter().all(passes) || there[0].1.dot(there[1].1) < ALONG_COS {
         return None;
     }
     let axis = (there[0].1 + there[1].1).normalize();
@@ -74,12 +74,12 @@ fn cusp(image: &LineImage, lines: &[Streamline], [a, b]: [&End; 2], tip: Point) 
         return None;
     }
     let tip = Tail { point: tip, heading: -axis, curvature: 0.0 };
-    let endings = arms.map(|arm| {
+    let leads = arms.map(|arm| {
         let points = iter::once(tip.point).chain(bridge(&tip, &arm.tail)).collect();
-        Ending { points, replaced: arm.hidden }
+        Lead { points, replaced: arm.hidden }
     });
-    let is_inked = |ending: &Ending| ending.points.iter().all(|p| image.ink.sample(*p) > INKED);
-    endings.iter().all(is_inked).then_some(endings)
+    let is_inked = |lead: &Lead| lead.points.iter().all(|p| image.ink.sample(*p) > INKED);
+    leads.iter().all(is_inked).then_some(leads)
 }
 
 /// A line that comes to a cusp.
@@ -91,11 +91,11 @@ struct Arm {
 }
 
 /// The part of an end's line that is apart from another's.
-fn arm(lines: &[Streamline], end: &End, other: &End, line_width: f64) -> Option<Arm> {
+fn arm(lines: &Lines, end: &End, other: &End, line_width: f64) -> Option<Arm> {
     let inwards = |end: &End| {
-        let n = lines[end.line].points.len() as i64;
-        let (first, step) = if end.side == 0 { (0, 1) } else { (n - 1, -1) };
-        run(&lines[end.line], first, step, 0.0, (LONGEST + OVER) * line_width)
+        let line = &lines[end.line];
+        let step = if end.side == 0 { 1 } else { -1 };
+        line.run(line.inwards(end.side, 0) as i64, step, 0.0, (LONGEST + OVER) * line_width)
     };
     let (line, own) = (&lines[end.line], inwards(end));
     let others: Vec<Point> = inwards(other).into_iter().map(|k| lines[other.line].points[k]).collect();

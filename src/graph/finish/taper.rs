@@ -4,8 +4,8 @@
 //! lose the width for good, and goes on straight. For outlines such stretches are measured again: each point is put in
 //! the middle of its own ink, across the stroke, and gets the width found there.
 
-use super::{Edge, JunctionKind, StrokeGraph};
 use crate::clean::LineImage;
+use crate::graph::{Edge, JunctionKind, StrokeGraph};
 use crate::profile::cross_profile;
 use crate::streamline::STEP;
 use kurbo::{Point, Vec2};
@@ -15,13 +15,18 @@ use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 const LONGEST_JUNCTION: f64 = 3.0;
 /// Points to both sides that tell the direction.
 const AROUND: usize = 6;
+/// Ink is looked at this many times its depth, and so many pixels, to either side of a point.
+const ACROSS: f64 = 2.5;
+const ACROSS_PIXELS: f64 = 2.0;
 /// Times that a point is moved to the middle of its ink.
 const ROUNDS: usize = 3;
 /// As many measured points at an end tell the width that its place was found by.
 const NEAR: usize = 40;
 
-/// Measures long stretches again, and sets free ends half of their new width short of the ink's.
-pub(super) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
+/// Measures long stretches again, and sets free ends half of their new width short of the ink's. Returns how many
+/// stretches there were.
+pub(in crate::graph) fn measure(image: &LineImage, graph: &mut StrokeGraph) -> usize {
+    let mut measured = 0;
     let edges: Vec<EdgeIndex> = graph.graph.edge_indices().collect();
     for e in edges {
         let Some((a, b)) = graph.graph.edge_endpoints(e) else { continue };
@@ -29,6 +34,7 @@ pub(super) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
         let edge = &mut graph.graph[e];
         for (from, to) in lost(edge, LONGEST_JUNCTION * image.line_width) {
             (0..ROUNDS).for_each(|_| measure_stretch(image, edge, from, to));
+            measured += 1;
         }
         for (node, reversed) in [(a, false), (b, true)] {
             if a != b && graph.graph[node].kind == JunctionKind::FreeEnd {
@@ -36,6 +42,7 @@ pub(super) fn measure(image: &LineImage, graph: &mut StrokeGraph) {
             }
         }
     }
+    measured
 }
 
 /// Runs of points without a width, longer than `least` pixels; their first and last indices, nodes left out.
@@ -56,7 +63,7 @@ fn measure_stretch(image: &LineImage, edge: &mut Edge, from: usize, to: usize) {
         }
         let normal: Vec2 = along.normalize().turn_90();
         let depth = f64::from(image.depth.at(points[k]).unwrap_or(0.0));
-        let profile = cross_profile(&image.ink, points[k], normal, 2.5 * depth + 2.0);
+        let profile = cross_profile(&image.ink, points[k], normal, ACROSS * depth + ACROSS_PIXELS);
         if let Some((width, middle)) = profile.and_then(|p| Some((p.width()?, p.middle()?)))
             && middle.abs() < 0.5 * width
         {

@@ -1,44 +1,68 @@
 //! The course of a line towards a place, and how well one line goes on in another.
+//!
+//! There are two measures, for two situations. Where the ways of lines through shared ink are known for longer than a
+//! junction, [`departure`] compares what lies between two arms with an arc. At a node, which is a point, [`continuation`]
+//! compares the arms' directions there.
 
-use crate::streamline::{STEP, Stop, Streamline, Tail, angle_between};
-use kurbo::{CubicBez, ParamCurve, Point};
+use super::line::{EndState, Line};
+use crate::streamline::{STEP, Tail, angle_between};
+use kurbo::{CubicBez, ParamCurve, Point, Vec2};
 
 /// Of thinner pens than this, in pixels, courses are as long as of this one.
-pub(super) const THIN: f64 = 3.0;
-/// How far from an arc the way from one arm to another may be, and what another pairing of arms must gain: [`departure`].
-pub(super) const LARGEST: f64 = 0.4;
-pub(super) const MARGIN: f64 = 0.2;
+pub(in crate::graph) const THIN: f64 = 3.0;
+/// The way from one arm to another departs from an arc by less than this, radians: [`departure`]. Another pairing of arms is
+/// better by at least so much. Empirical, guarded by `encounters.rs`.
+pub(in crate::graph) const LARGEST_DEPARTURE: f64 = 0.4;
+pub(in crate::graph) const LEAST_GAIN: f64 = 0.2;
 /// Weight of a turn that the arms' curvature does not explain; in narrow bends it is measured too small.
 const BENT: f64 = 0.5;
+/// A jump in curvature counts as the turn that it makes over this many line widths.
+const CURVATURE_SPAN: f64 = 3.0;
+/// A jump in curvature counts for no more than this, radians (14 degrees): curvature is measured worse than direction.
+const LARGEST_JUMP: f64 = 0.25;
+/// An arm goes on bending for no longer than this many line widths: its curvature was measured over as many.
+const BENDING: f64 = 5.0;
+/// The standard deviation of a line's points about its course, in pixels: curvature that it explains is not kept.
+const JITTER: f64 = 0.1;
+/// A course takes more points than these.
+const FEWEST: usize = 5;
 
-/// Indices of a line's points from so many pixels after one of them on, over that many; `step` is 1 or -1, the way that
-/// they are taken.
-pub(super) fn run(line: &Streamline, at: i64, step: i64, from: f64, over: f64) -> Vec<usize> {
-    let (from, to) = ((from / STEP) as i64, ((from + over) / STEP) as i64);
-    let n = line.points.len() as i64;
-    let index = |k: i64| if line.closed { (at + step * k).rem_euclid(n) } else { at + step * k };
-    let to = if line.closed { to.min(n) } else { to };
-    (from..to).map(index).take_while(|k| (0..n).contains(k)).map(|k| k as usize).collect()
-}
-
-/// The course of a run of points, towards its first.
-pub(super) fn course(line: &Streamline, run: &[usize]) -> Option<Tail> {
+/// The course of a run of points of a line, towards the first of them; `None` where they are too few.
+pub(in crate::graph) fn course(line: &Line, run: &[usize]) -> Option<Tail> {
     let oldest_first: Vec<Point> = run.iter().rev().map(|&k| line.points[k]).collect();
-    (oldest_first.len() > 5).then(|| Tail::fit(&oldest_first, 0.1)).flatten()
+    (oldest_first.len() > FEWEST).then(|| Tail::fit(&oldest_first, JITTER)).flatten()
 }
 
 /// How far the way from one arm to another, both heading into it, is from an arc that goes on as both bend, in radians: an
 /// arc leaves its chord by the angle by which it comes back to it, and by both together it turns as much as its curvature
 /// says.
-pub(super) fn departure(a: &Tail, b: &Tail) -> f64 {
+pub(in crate::graph) fn departure(a: &Tail, b: &Tail) -> f64 {
     let chord = b.point - a.point;
     let (leaving, coming) = (angle_between(a.heading, chord), angle_between(chord, -b.heading));
     let bend = 0.5 * (a.curvature - b.curvature) * chord.hypot();
     (leaving - coming).abs() + BENT * (leaving + coming - bend).abs()
 }
 
+/// An arm as a straight line: its course, bent by its curvature up to where it passes a point.
+pub(in crate::graph) fn arm_line(tail: &Tail, towards: Point, line_width: f64) -> (Point, Vec2) {
+    let normal = tail.heading.turn_90();
+    let s = (towards - tail.point).dot(tail.heading).clamp(0.0, BENDING * line_width);
+    let point = tail.point + tail.heading * s + normal * (0.5 * tail.curvature * s * s);
+    let d = tail.heading + normal * (tail.curvature * s);
+    (point, d.normalize())
+}
+
+/// How badly one arm of a node continues another, both heading into it, in radians: the turn between them, and
+/// the jump in curvature over a couple of line widths.
+pub(in crate::graph) fn continuation(a: &Tail, b: &Tail, at: Point, line_width: f64) -> f64 {
+    let (_, into) = arm_line(a, at, line_width);
+    let (_, out) = arm_line(b, at, line_width);
+    let jump = (CURVATURE_SPAN * line_width * (a.curvature + b.curvature)).abs().min(LARGEST_JUMP);
+    angle_between(into, -out).abs() + jump
+}
+
 /// From one arm to another, smoothly; neither end is included.
-pub(super) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
+pub(in crate::graph) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
     let chord = (b.point - a.point).hypot();
     let third = chord / 3.0;
     let curve = CubicBez::new(a.point, a.point + a.heading * third, b.point + b.heading * third, b.point);
@@ -46,14 +70,15 @@ pub(super) fn bridge(a: &Tail, b: &Tail) -> Vec<Point> {
     (1..count).map(|k| curve.eval(k as f64 / count as f64)).collect()
 }
 
-/// The last points of a line, from where it meets another on, and how many points of its own they replace.
-pub(super) struct Ending {
+/// The way of a line to its place on another: the last points, from that place on, and how many of the line's own they
+/// replace.
+pub(in crate::graph) struct Lead {
     pub points: Vec<Point>,
     pub replaced: usize,
 }
 
-impl Ending {
-    pub fn apply(self, line: &mut Streamline, side: usize) {
+impl Lead {
+    pub(super) fn apply(self, line: &mut Line, side: usize) {
         if side == 1 {
             line.reverse();
         }
@@ -63,7 +88,7 @@ impl Ending {
         if side == 1 {
             line.reverse();
         }
-        line.stops[side] = Stop::Joined;
+        line.ends[side] = EndState::Led;
     }
 }
 
@@ -108,21 +133,5 @@ mod tests {
             let all: Vec<Point> = [vec![a.point], bridge, vec![b.point]].concat();
             assert!(all.windows(2).all(|w| (w[1] - w[0]).hypot() < 1.2 * STEP));
         }
-    }
-
-    #[test]
-    fn runs_end_with_a_line_and_go_on_round_a_closed_one() {
-        let points: Vec<Point> = (0..10).map(|k| Point::new(STEP * f64::from(k), 0.0)).collect();
-        let widths = vec![1.0; points.len()];
-        let line = |closed| Streamline {
-            points: points.clone(),
-            widths: widths.clone(),
-            closed,
-            stops: [crate::streamline::Stop::InkEnd; 2],
-        };
-        assert_eq!(run(&line(false), 7, 1, 0.0, 4.0), [7, 8, 9]);
-        assert_eq!(run(&line(false), 3, -1, STEP, 4.0), [2, 1, 0]);
-        assert_eq!(run(&line(true), 8, 1, STEP, 2.0), [9, 0, 1, 2]);
-        assert_eq!(run(&line(true), 0, 1, 0.0, 100.0).len(), 10);
     }
 }

@@ -6,20 +6,18 @@
 //! and `y = m u + c u^2 / 2` for a line that meets it at an angle. The `s0` that explains the edge best, in least squares,
 //! is the node; up to where the line is alone again, its middle is what was solved.
 
-use super::contacts::{LineIndex, Place, direction, direction_at, point_at, width_at};
-use super::course::Ending;
-use super::ends::{End, ends};
-use super::nodes::arm_line;
+use super::leave::{Sample, leave};
 use crate::clean::LineImage;
-use crate::streamline::{STEP, Stop, Streamline};
+use crate::graph::lines::{End, EndState, Lead, Line, Lines, Place, arm_line};
+use crate::streamline::STEP;
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 
 /// A body is looked for within this many line widths of an end, running along it within this cosine's angle (50 degrees).
 const NEAR: f64 = 1.2;
-const ALONG: f64 = 0.64;
+const ALONG_COS: f64 = 0.64;
 /// The end's course, drawn out to the body, comes in within this cosine's angle (35 degrees).
-const ARRIVING: f64 = 0.82;
+const ARRIVING_COS: f64 = 0.82;
 /// A line that comes in at an angle meets the body this many line widths from its ends.
 const CLEAR: f64 = 2.0;
 /// The edge is measured from this many line widths before the end's last point on the body, or from where it has come down
@@ -31,8 +29,6 @@ const AFTER: f64 = 8.0;
 const APART: f64 = 1.2;
 /// A line from this many line widths on shows its own middle.
 const ALONE: f64 = 0.7;
-/// A meeting at an angle has to explain the edge better than a touch by this factor.
-const ANGLE: f64 = 2.0;
 /// A line that meets the body at a larger slope (27 degrees) is a tee, whose arms tell its place better.
 const STEEPEST: f64 = 0.5;
 /// Root mean square deviation of the edge from its explanation, in line widths and pixels, from which it is none.
@@ -42,84 +38,43 @@ const MISFIT_PIXELS: f64 = 0.15;
 const LOWER: f64 = 0.04;
 /// An edge that turns back by this share of the line's width is another's.
 const JUMP: f64 = 0.3;
-/// The fewest places at which the edge must bulge.
+/// The edge bulges where it is further out than this, in line widths, of a pen of at least so many pixels; there are at least
+/// so many such places.
+const BULGE: f64 = 0.12;
+const THICK: f64 = 2.0;
 const FEWEST: usize = 6;
+/// Fainter ink than twice this, as a share of full ink, has no edge.
+const FAINT: f32 = 0.15;
+/// Of the line's own points, so many times as many are looked at as of the body's edge after the end.
+const OWN: f64 = 4.0;
+/// On which side of the body a line lies is told this many line widths from its end.
+const INSIDE: f64 = 4.0;
 
-/// Leads every end that runs into a body at a small angle to the place where it meets the body.
-pub(super) fn merge(image: &LineImage, lines: &mut [Streamline]) {
-    let index = LineIndex::new(lines);
-    let ends = ends(image, lines);
-    let is_open = |end: &&End| !end.stop.is_cut_off() && !matches!(end.stop, Stop::Settled | Stop::Joined);
-    let solved = |end: &End| Some((end.line, end.side, solve(image, lines, &index, end)?));
-    let solved: Vec<(usize, usize, Ending)> =
-        ends.par_iter().filter_map(|end| solved(end.as_ref().filter(is_open)?)).collect();
-    for (line, side, ending) in solved {
-        ending.apply(&mut lines[line], side);
+/// Leads every end that runs into a body at a small angle to the place where it meets the body. Returns how many there are.
+pub(in crate::graph) fn lead(image: &LineImage, lines: &mut Lines) -> usize {
+    let is_open = |end: &&End| matches!(end.state, EndState::Open | EndState::RanIn | EndState::Parted);
+    let solved = |end: &End| Some((end.line, end.side, solve(image, lines, end)?));
+    let ends = lines.ends(image).par_iter().flatten().filter(is_open);
+    let solved: Vec<(usize, usize, Lead)> = ends.filter_map(solved).collect();
+    let count = solved.len();
+    for (line, side, lead) in solved {
+        lines.lead(line, side, lead);
     }
+    count
 }
 
-/// A place beside the body: how far along it, and how far away.
-#[derive(Clone, Copy)]
-struct Sample {
-    s: f64,
-    y: f64,
-    /// Half the width of the line whose edge was measured, 0 where it was its middle: at a slope the edge is further away,
-    /// by the secant.
-    half: f64,
-}
-
-/// How a line leaves the body.
-#[derive(Clone, Copy, Debug)]
-struct Leave {
-    /// Where, along the body.
-    s0: f64,
-    slope: f64,
-    curvature: f64,
-    /// Sum of squares.
-    error: f64,
-}
-
-impl Leave {
-    /// How much further away the edge is measured than the middle and half a width, for the slope there.
-    fn secant(&self, p: &Sample) -> f64 {
-        let u = (p.s - self.s0).max(0.0);
-        let k = self.curvature * u;
-        let slope = if self.slope > 0.0 { self.slope + k } else { k / (1.0 - k * k).max(0.1).sqrt() };
-        p.half * ((1.0 + slope * slope).sqrt() - 1.0)
-    }
-
-    /// From where on the line's edge lies outside the body's: a slanting line's is ahead of its middle.
-    fn first(&self, half: f64) -> f64 {
-        if self.slope <= 0.0 {
-            return self.s0;
-        }
-        self.s0 - half * ((1.0 + self.slope * self.slope).sqrt() - 1.0) / self.slope
-    }
-
-    /// Distance from the body at a place.
-    fn at(&self, s: f64) -> f64 {
-        let u = s - self.s0;
-        if self.slope > 0.0 {
-            return self.slope * u + 0.5 * self.curvature * u * u.max(0.0);
-        }
-        // A circle, as far as it goes.
-        let k = self.curvature;
-        if k * u < 0.9 { k * u * u / (1.0 + (1.0 - k * k * u * u).sqrt()) } else { 0.5 * k * u * u }
-    }
-}
-
-fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) -> Option<Ending> {
+fn solve(image: &LineImage, lines: &Lines, end: &End) -> Option<Lead> {
     let lw = image.line_width;
-    let body = *bodies(lines, index, end, NEAR * lw).first()?;
-    let arriving = arm_line(&end.tail, point_at(&lines[body.line], body.at), lw).1;
-    if arriving.dot(direction(lines, body)).abs() < ARRIVING {
+    let body = *bodies(lines, end, NEAR * lw).first()?;
+    let arriving = arm_line(&end.tail, lines.point(body), lw).1;
+    if arriving.dot(lines.direction(body)).abs() < ARRIVING_COS {
         return None;
     }
     let frame = Frame::new(lines, body, end, lw)?;
-    let widths = [end.width, width_at(lines, body, lw)];
+    let widths = [end.width, lines.width(body, lw)];
     let own = frame.own(&lines[end.line], end.side, APART.max(ALONE) * lw + lw);
     let edge = frame.edge(image, widths[0], APART * lw);
-    let bulging = edge.iter().filter(|e| e.y > 0.12 * lw.max(2.0)).count();
+    let bulging = edge.iter().filter(|e| e.y > BULGE * lw.max(THICK)).count();
     if bulging < FEWEST {
         return None;
     }
@@ -145,15 +100,15 @@ fn solve(image: &LineImage, lines: &[Streamline], index: &LineIndex, end: &End) 
     }
     let at = |k: i64| leave.s0 + STEP * k as f64;
     let points: Vec<Point> = (0..count).map(|k| frame.point(at(k), leave.at(at(k)))).collect::<Option<_>>()?;
-    Some(Ending { points, replaced: alone })
+    Some(Lead { points, replaced: alone })
 }
 
 /// The lines that an end runs along, the nearest first, each where it is nearest.
-pub(super) fn bodies(lines: &[Streamline], index: &LineIndex, end: &End, radius: f64) -> Vec<Place> {
+pub(super) fn bodies(lines: &Lines, end: &End, radius: f64) -> Vec<Place> {
     let mut bodies: Vec<Place> = Vec::new();
-    for (place, ..) in index.near(end.point, radius) {
-        let direction = direction_at(&lines[place.line], place.at as usize);
-        let is_along = direction.dot(end.tail.heading).abs() > ALONG;
+    for (place, ..) in lines.near(end.point, radius) {
+        let direction = lines.direction(place);
+        let is_along = direction.dot(end.tail.heading).abs() > ALONG_COS;
         if is_along && place.line != end.line && bodies.iter().all(|body| body.line != place.line) {
             bodies.push(place);
         }
@@ -163,7 +118,7 @@ pub(super) fn bodies(lines: &[Streamline], index: &LineIndex, end: &End, radius:
 
 /// The body as an axis: `s` grows the way the line leaves it, `y` to the line's side.
 struct Frame<'a> {
-    body: &'a Streamline,
+    body: &'a Line,
     /// Index of the body's point at `s = 0`, and which way indices go.
     origin: f64,
     forward: f64,
@@ -173,13 +128,12 @@ struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    fn new(lines: &'a [Streamline], place: Place, end: &End, line_width: f64) -> Option<Self> {
+    fn new(lines: &'a Lines, place: Place, end: &End, line_width: f64) -> Option<Self> {
         let body = &lines[place.line];
-        let along = direction_at(body, place.at as usize);
+        let along = lines.direction(place);
         let forward = -along.dot(end.tail.heading).signum();
-        let n = lines[end.line].points.len();
-        let inner = ((4.0 * line_width / STEP) as usize).min(n - 1);
-        let inside = lines[end.line].points[if end.side == 0 { inner } else { n - 1 - inner }];
+        let line = &lines[end.line];
+        let inside = line.at_end(end.side, ((INSIDE * line_width / STEP) as usize).min(line.points.len() - 1));
         let mut frame =
             Self { body, origin: place.at, forward, side: 1.0, range: [BEFORE * line_width, AFTER * line_width] };
         // The side is that of the line before it comes near.
@@ -197,7 +151,7 @@ impl<'a> Frame<'a> {
     }
 
     fn normal(&self, k: usize) -> Vec2 {
-        direction_at(self.body, k).turn_90() * (self.side * self.forward)
+        self.body.direction_at(k).turn_90() * (self.side * self.forward)
     }
 
     /// The point at a distance along the body and away from it.
@@ -219,14 +173,12 @@ impl<'a> Frame<'a> {
     }
 
     /// The line's own points from its end on, up to a distance from the body, and whether each is alone.
-    fn own(&self, line: &Streamline, side: usize, reach: f64) -> Vec<(Sample, bool)> {
-        let n = line.points.len();
-        let index = |k: usize| if side == 0 { k } else { n - 1 - k };
-        let own = (0..n).map_while(|k| {
-            let (s, y) = self.locate(line.points[index(k)])?;
-            (y < reach).then_some((Sample { s, y, half: 0.0 }, line.widths[index(k)].is_finite()))
+    fn own(&self, line: &Line, side: usize, reach: f64) -> Vec<(Sample, bool)> {
+        let own = (0..line.points.len()).map_while(|k| {
+            let (s, y) = self.locate(line.at_end(side, k))?;
+            (y < reach).then_some((Sample { s, y, half: 0.0 }, line.is_alone(line.inwards(side, k))))
         });
-        own.take((4.0 * self.range[1] / STEP) as usize).collect()
+        own.take((OWN * self.range[1] / STEP) as usize).collect()
     }
 
     /// How far the line's middle must be from the body's for the edge of their ink to lie where it does.
@@ -264,71 +216,10 @@ fn edge(image: &LineImage, p: Point, normal: Vec2, reach: f64) -> Option<f64> {
     const SPACING: f64 = 0.25;
     let at = |k: usize| image.ink.sample(p + normal * (SPACING * k as f64));
     let half = 0.5 * at(0).min(1.0);
-    if half < 0.15 {
+    if half < FAINT {
         return None;
     }
     let k = (1..=(reach / SPACING) as usize).find(|&k| at(k) < half)?;
     let (inside, outside) = (at(k - 1), at(k));
     Some(SPACING * (k as f64 - 1.0 + f64::from((inside - half) / (inside - outside))))
-}
-
-/// The best explanation of the samples; `rest` is what `y` measures where only the body is.
-fn leave(samples: &[Sample], rest: f64) -> Option<Leave> {
-    let (first, last) = (samples.first()?.s, samples.iter().map(|s| s.s).fold(f64::MIN, f64::max));
-    let count = ((last - first) / STEP) as i64 - 3;
-    let starts = (2..count).map(|k| first + STEP * k as f64);
-    let both: Vec<[Option<Leave>; 2]> = starts.map(|s0| [touch(samples, s0, rest), angle(samples, s0, rest)]).collect();
-    let best = |which: usize| both.iter().filter_map(|l| l[which]).min_by(|a, b| a.error.total_cmp(&b.error));
-    match (best(0), best(1)) {
-        (Some(touch), Some(angle)) if angle.error * ANGLE < touch.error => Some(angle),
-        (touch, angle) => touch.or(angle),
-    }
-}
-
-/// Rounds in which what the slope adds to the edge is found.
-const ROUNDS: usize = 3;
-
-/// A circle that touches the body at `s0`.
-fn touch(samples: &[Sample], s0: f64, rest: f64) -> Option<Leave> {
-    let mut leave = Leave { s0, slope: 0.0, curvature: 0.0, error: 0.0 };
-    for _ in 0..ROUNDS {
-        let (mut qq, mut qy) = (0.0, 0.0);
-        for p in samples.iter().filter(|p| p.s > s0) {
-            let y = p.y - leave.secant(p);
-            let q = 0.5 * ((p.s - s0).powi(2) + y * y);
-            (qq, qy) = (qq + q * q, qy + q * y);
-        }
-        leave.curvature = qy / qq;
-        if leave.curvature.is_nan() || leave.curvature <= 0.0 {
-            return None;
-        }
-    }
-    Some(with_error(samples, rest, leave))
-}
-
-/// A line that meets the body at `s0` at an angle.
-fn angle(samples: &[Sample], s0: f64, rest: f64) -> Option<Leave> {
-    let mut leave = Leave { s0, slope: 0.0, curvature: 0.0, error: 0.0 };
-    for _ in 0..ROUNDS {
-        let (mut uu, mut uq, mut qq, mut uy, mut qy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for p in samples.iter().filter(|p| p.s > leave.first(p.half)) {
-            let (u, y) = (p.s - s0, p.y - leave.secant(p));
-            let q = 0.5 * u * u;
-            (uu, uq, qq, uy, qy) = (uu + u * u, uq + u * q, qq + q * q, uy + u * y, qy + q * y);
-        }
-        let det = uu * qq - uq * uq;
-        if det < 1e-9 {
-            return None;
-        }
-        (leave.slope, leave.curvature) = ((uy * qq - qy * uq) / det, (qy * uu - uy * uq) / det);
-        if leave.slope <= 0.0 {
-            return None;
-        }
-    }
-    Some(with_error(samples, rest, leave))
-}
-
-fn with_error(samples: &[Sample], rest: f64, leave: Leave) -> Leave {
-    let at = |p: &Sample| if p.s > leave.first(p.half) { (leave.at(p.s) + leave.secant(p)).max(rest) } else { rest };
-    Leave { error: samples.iter().map(|p| (p.y - at(p)).powi(2)).sum(), ..leave }
 }

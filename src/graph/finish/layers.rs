@@ -3,13 +3,13 @@
 //! Where a fine line runs under a broad one its ink cannot be seen. What comes out on the other side as it went in is one
 //! line that crosses; what ends at the broad line's edge is drawn out to its middle, as a pen would have been.
 
-use super::contacts::{LineIndex, Place, width_at};
-use super::gaps::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
-use super::{Edge, Junction, JunctionKind, StrokeGraph, Trail, pens};
+use super::ends::{FreeEnd, chains, facing, free_ends, index_of, retain_first};
 use crate::clean::RIM;
 use crate::drawing::Dashes;
-use crate::streamline::{STEP, Stop, Streamline};
-use kurbo::{Affine, Line, Point};
+use crate::graph::lines::{EndState, Line, Lines, Place};
+use crate::graph::{Edge, Junction, JunctionKind, StrokeGraph, Trail, pens};
+use crate::streamline::STEP;
+use kurbo::{Affine, Line as Segment, Point};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub(crate) fn join(mut fine: StrokeGraph, mut broad: StrokeGraph) -> StrokeGraph
     let factor = fine.page.scale / broad.page.scale;
     scale(&mut broad, factor);
     let edges: Vec<EdgeIndex> = broad.graph.edge_indices().collect();
-    let lines: Vec<Streamline> = edges.iter().map(|&e| open_line(&broad.graph[e])).collect();
+    let lines: Lines = edges.iter().map(|&e| open_line(&broad.graph[e])).collect::<Vec<_>>().into();
     let mut out = StrokeGraph { page: fine.page, ..StrokeGraph::default() };
     let meetings = Meetings::of(&fine, &lines, broad.page.line_width, &mut out);
     let cuts = |line: usize| meetings.on_broad.get(&line).map_or(&[][..], |cuts| cuts);
@@ -62,9 +62,9 @@ fn scale(graph: &mut StrokeGraph, factor: f64) {
     graph.fills.iter_mut().for_each(|fill| fill.outline.apply_affine(Affine::scale(factor)));
 }
 
-fn open_line(edge: &Edge) -> Streamline {
+fn open_line(edge: &Edge) -> Line {
     let Edge { points, widths, .. } = edge.clone();
-    Streamline { points, widths, closed: false, stops: [Stop::InkEnd; 2] }
+    Line { points, widths, closed: false, ends: [EndState::Open; 2] }
 }
 
 /// A node on an edge, at a fractional index of the edge's points.
@@ -86,8 +86,8 @@ struct Meetings {
 }
 
 impl Meetings {
-    fn of(fine: &StrokeGraph, broad: &[Streamline], broad_width: f64, out: &mut StrokeGraph) -> Self {
-        let finder = Finder { fine, broad, broad_width, index: LineIndex::new(broad), ends: free_ends(fine) };
+    fn of(fine: &StrokeGraph, broad: &Lines, broad_width: f64, out: &mut StrokeGraph) -> Self {
+        let finder = Finder { fine, broad, broad_width, ends: free_ends(fine) };
         let mut found = Self {
             nodes: BTreeMap::new(),
             on_fine: BTreeMap::new(),
@@ -127,9 +127,8 @@ impl Meetings {
 
 struct Finder<'a> {
     fine: &'a StrokeGraph,
-    broad: &'a [Streamline],
+    broad: &'a Lines,
     broad_width: f64,
-    index: LineIndex<'a>,
     /// Two for each fine stroke; `None` where that is not in the open.
     ends: Vec<Option<FreeEnd>>,
 }
@@ -139,20 +138,20 @@ impl Finder<'_> {
     fn body(&self, end: usize) -> Option<f64> {
         let p = self.ends[end].as_ref()?.point;
         let slack = AT_EDGE * self.fine.page.line_width + RIM;
-        let near = self.index.near(p, 2.0 * self.broad_width + slack).into_iter();
-        let widths = near.map(|(place, _, distance)| (width_at(self.broad, place, self.broad_width), distance));
+        let near = self.broad.near(p, 2.0 * self.broad_width + slack).into_iter();
+        let widths = near.map(|(place, _, distance)| (self.broad.width(place, self.broad_width), distance));
         widths.filter(|(width, distance)| *distance <= 0.5 * width + slack).map(|(width, _)| width).next()
     }
 
     /// Where a line from one point to another first crosses a broad one.
-    fn first_crossing(&self, way: Line) -> Option<(Place, Point)> {
-        let crossings = self.index.crossings(way).into_iter();
+    fn first_crossing(&self, way: Segment) -> Option<(Place, Point)> {
+        let crossings = self.broad.crossings(way).into_iter();
         crossings.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(place, point, _)| (place, point))
     }
 
     /// Where an end at the edge of a broad line of some width, drawn out, comes to its middle.
     fn foot(&self, end: &FreeEnd, width: f64) -> Option<(Place, Point)> {
-        self.first_crossing(Line::new(end.aim, end.aim + end.course.heading * (UNDER * width)))
+        self.first_crossing(Segment::new(end.aim, end.aim + end.course.heading * (UNDER * width)))
     }
 
     /// Pairs of ends at the edges of broad lines, given with their widths, where one line goes under and comes out, the best
@@ -165,7 +164,7 @@ impl Finder<'_> {
             for j in index.near(a.point, 2.0 * UNDER * width).filter(|&j| j > i) {
                 if let Some(b) = &self.ends[j]
                     && let Some(misfit) = facing(self.fine, &self.ends, [i, j])
-                    && let Some((place, point)) = self.first_crossing(Line::new(a.aim, b.aim))
+                    && let Some((place, point)) = self.first_crossing(Segment::new(a.aim, b.aim))
                 {
                     found.push(((b.point - a.point).hypot() + misfit, [i, j], place, point));
                 }
@@ -182,7 +181,7 @@ impl Finder<'_> {
         for edge in self.fine.graph.edge_indices() {
             let points = &self.fine.graph[edge].points;
             for (k, pair) in points.windows(2).enumerate() {
-                for (place, point, t) in self.index.crossings(Line::new(pair[0], pair[1])) {
+                for (place, point, t) in self.broad.crossings(Segment::new(pair[0], pair[1])) {
                     let at = k as f64 + t;
                     let again = |&(e, before, other, _): &(EdgeIndex, f64, Place, Point)| {
                         e == edge && other.line == place.line && (at - before) * STEP < UNDER * self.broad_width

@@ -5,11 +5,11 @@
 //! together: arms that are one line go on in each other's direction and bend alike. Where the walks say otherwise, the
 //! shared stretch is taken out of them, and the arms are joined anew.
 
-use super::contacts::LineIndex;
-use super::course::{LARGEST, MARGIN, THIN, bridge, course, departure, run};
-use super::nodes::arm_line;
 use crate::clean::LineImage;
-use crate::streamline::{STEP, Stop, Streamline, Tail};
+use crate::graph::lines::{
+    EndState, LARGEST_DEPARTURE, LEAST_GAIN, Line, Lines, THIN, arm_line, bridge, course, departure,
+};
+use crate::streamline::{STEP, Tail};
 use kurbo::{Point, Vec2};
 use petgraph::unionfind::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,7 +28,7 @@ const MIDDLE: f64 = 8.0;
 /// An arm's course is that of this many line widths.
 const OVER: f64 = 3.0;
 /// All arms run along one another within this cosine's angle (40 degrees).
-const ALONG: f64 = 0.766;
+const ALONG_COS: f64 = 0.766;
 /// Ink that a stroke runs through has at least this much of a line's.
 const INKED: f32 = 0.4;
 
@@ -54,12 +54,12 @@ struct Arm {
 /// Two arms that are one line.
 type Link = [Arm; 2];
 
-/// Joins the arms of every touch as they belong together.
-pub(super) fn part(image: &LineImage, lines: &mut Vec<Streamline>) {
-    let turned: Vec<Streamline> = lines.iter().map(start_alone).collect();
+/// Joins the arms of every touch as they belong together. Returns how many touches there are where they were not.
+pub(in crate::graph) fn part(image: &LineImage, lines: &mut Lines) -> usize {
+    let turned: Lines = lines.iter().map(start_alone).collect::<Vec<_>>().into();
     let stretches: Vec<Stretch> = (0..lines.len()).flat_map(|i| stretches(image, &turned, i)).collect();
     if stretches.is_empty() {
-        return;
+        return 0;
     }
     let groups = shared(image, &turned, &stretches);
     let (mut repairs, mut left) = (Vec::new(), Vec::new());
@@ -71,18 +71,21 @@ pub(super) fn part(image: &LineImage, lines: &mut Vec<Streamline>) {
     }
     let whole = over_middles(image, left).into_iter();
     repairs.extend(whole.filter_map(|group| repaired(image, &turned, &group).map(|links| (group, links))));
-    if !repairs.is_empty() {
+    let count = repairs.len();
+    if count > 0 {
         let (removed, links): (Vec<Vec<Stretch>>, Vec<[Link; 2]>) = repairs.into_iter().unzip();
         let removed = removed.concat();
         let parted = joined(&turned, &removed, links.as_flattened().as_flattened());
         let mut number = 0..;
+        let lines = lines.edit();
         lines.retain(|_| number.next().is_some_and(|i| removed.iter().all(|stretch| stretch.line != i)));
         lines.extend(parted);
     }
+    count
 }
 
 /// A line that, if it is closed, begins in the middle of where it is alone longest.
-fn start_alone(line: &Streamline) -> Streamline {
+fn start_alone(line: &Line) -> Line {
     let mut line = line.clone();
     if !line.closed {
         return line;
@@ -100,7 +103,7 @@ fn start_alone(line: &Streamline) -> Streamline {
     line
 }
 
-fn stretches(image: &LineImage, lines: &[Streamline], i: usize) -> Vec<Stretch> {
+fn stretches(image: &LineImage, lines: &Lines, i: usize) -> Vec<Stretch> {
     let line = &lines[i];
     let n = line.points.len();
     let lasting = (LASTING * image.line_width / STEP) as usize;
@@ -117,9 +120,9 @@ fn stretches(image: &LineImage, lines: &[Streamline], i: usize) -> Vec<Stretch> 
         }
     }
     if !line.closed {
-        let ends = [(line.stops[0], 0), (line.stops[1], n)];
-        let bare = |&(stop, at): &(Stop, usize)| {
-            stop == Stop::Merged && stretches.iter().all(|s| s.points.start != at && s.points.end != at)
+        let ends = [(line.ends[0], 0), (line.ends[1], n)];
+        let bare = |&(state, at): &(EndState, usize)| {
+            state == EndState::RanIn && stretches.iter().all(|s| s.points.start != at && s.points.end != at)
         };
         let bare: Vec<usize> = ends.iter().filter(|e| bare(e)).map(|e| e.1).collect();
         stretches.extend(bare.into_iter().map(|at| Stretch { line: i, points: at..at }));
@@ -132,16 +135,15 @@ fn stretches(image: &LineImage, lines: &[Streamline], i: usize) -> Vec<Stretch> 
 }
 
 /// The groups of stretches that share their ink.
-fn shared(image: &LineImage, lines: &[Streamline], stretches: &[Stretch]) -> Vec<Vec<Stretch>> {
+fn shared(image: &LineImage, lines: &Lines, stretches: &[Stretch]) -> Vec<Vec<Stretch>> {
     let mut of_line = vec![Vec::new(); lines.len()];
     stretches.iter().enumerate().for_each(|(s, stretch)| of_line[stretch.line].push(s));
-    let index = LineIndex::new(lines);
     let mut groups = UnionFind::new(stretches.len());
     for (s, stretch) in stretches.iter().enumerate() {
         let line = &lines[stretch.line];
         let points = stretch.points.start.saturating_sub(1)..(stretch.points.end + 1).min(line.points.len());
         for k in points.step_by(2) {
-            for (place, ..) in index.near(line.points[k], NEAR * image.line_width) {
+            for (place, ..) in lines.near(line.points[k], NEAR * image.line_width) {
                 let at = place.at.round() as usize;
                 let holds = |other: &&usize| {
                     let points = &stretches[**other].points;
@@ -199,14 +201,14 @@ fn over_middles(image: &LineImage, groups: Vec<Vec<Stretch>>) -> Vec<Vec<Stretch
 }
 
 /// The pairing of a touch's four arms, if it is not that of the walks.
-fn repaired(image: &LineImage, lines: &[Streamline], group: &[Stretch]) -> Option<[Link; 2]> {
+fn repaired(image: &LineImage, lines: &Lines, group: &[Stretch]) -> Option<[Link; 2]> {
     let lw = image.line_width.max(THIN);
     let arms: Vec<Arm> = group.iter().flat_map(|stretch| arms(lines, stretch, lw)).collect();
     let arms: [Arm; 4] = arms.try_into().ok()?;
     let middle = arms.iter().fold(Vec2::ZERO, |sum, arm| sum + 0.25 * arm.tail.point.to_vec2()).to_point();
     let heading = |arm: &Arm| arm_line(&arm.tail, middle, image.line_width).1;
     let axis = heading(&arms[0]);
-    if arms.iter().any(|arm| heading(arm).dot(axis).abs() < ALONG) {
+    if arms.iter().any(|arm| heading(arm).dot(axis).abs() < ALONG_COS) {
         return None;
     }
     let (a, b): (Vec<Arm>, Vec<Arm>) = arms.iter().partition(|arm| heading(arm).dot(axis) > 0.0);
@@ -215,7 +217,7 @@ fn repaired(image: &LineImage, lines: &[Streamline], group: &[Stretch]) -> Optio
     let mut pairings = [[[a0, b0], [a1, b1]], [[a0, b1], [a1, b0]]];
     let costs = pairings.map(|p| p.iter().map(cost).fold((0.0, 0.0f64), |(sum, most), c| (sum + c, most.max(c))));
     let better = usize::from(costs[1].0 < costs[0].0);
-    if costs[better].0 + MARGIN > costs[1 - better].0 || costs[better].1 > LARGEST {
+    if costs[better].0 + LEAST_GAIN > costs[1 - better].0 || costs[better].1 > LARGEST_DEPARTURE {
         return None;
     }
     pairings.swap(0, better);
@@ -231,16 +233,16 @@ fn repaired(image: &LineImage, lines: &[Streamline], group: &[Stretch]) -> Optio
 }
 
 /// The lines that go into a stretch, at either of its ends.
-fn arms(lines: &[Streamline], stretch: &Stretch, line_width: f64) -> Vec<Arm> {
+fn arms(lines: &Lines, stretch: &Stretch, line_width: f64) -> Vec<Arm> {
     let line = &lines[stretch.line];
     let Range { start, end } = stretch.points;
     let arm = |at: usize, forward: bool, outside: Vec<usize>| {
         // Up to where the line is in shared ink again.
-        let alone = outside.iter().take_while(|&&k| line.widths[k].is_finite()).count();
+        let alone = outside.iter().take_while(|&&k| line.is_alone(k)).count();
         let tail = course(line, &outside[..alone])?;
         Some(Arm { line: stretch.line, from: start, at, forward, tail })
     };
-    let outside = |at: i64, step: i64| run(line, at, step, 0.0, OVER * line_width);
+    let outside = |at: i64, step: i64| line.run(at, step, 0.0, OVER * line_width);
     let (before, after) = (outside(start as i64 - 1, -1), outside(end as i64, 1));
     let both = [(before, true), (after, false)].into_iter();
     both.filter_map(|(outside, forward)| arm(*outside.first()?, forward, outside)).collect()
@@ -248,12 +250,12 @@ fn arms(lines: &[Streamline], stretch: &Stretch, line_width: f64) -> Vec<Arm> {
 
 /// A part of a line between stretches that were taken out, and the arms that its ends are, if any.
 struct Piece {
-    line: Streamline,
+    line: Line,
     arms: [Option<usize>; 2],
 }
 
 /// The lines that had stretches, without them and with their arms linked: each even one with the one after it.
-fn joined(lines: &[Streamline], removed: &[Stretch], arms: &[Arm]) -> Vec<Streamline> {
+fn joined(lines: &Lines, removed: &[Stretch], arms: &[Arm]) -> Vec<Line> {
     let mut pieces: Vec<Piece> = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         let mut gaps: Vec<Range<usize>> = removed.iter().filter(|s| s.line == i).map(|s| s.points.clone()).collect();
@@ -273,16 +275,11 @@ fn joined(lines: &[Streamline], removed: &[Stretch], arms: &[Arm]) -> Vec<Stream
             arms.iter().position(|arm| (arm.line, arm.at, arm.forward) == (i, at % n, forward))
         };
         for part in bounds.chunks_exact(2).filter(|part| part[0] < part[1]) {
-            let order = (part[0]..part[1]).map(|k| k % n);
-            let stop = |at: usize, end: usize, side: usize| {
-                if at == end && !line.closed { line.stops[side] } else { Stop::Cut }
+            let state = |at: usize, end: usize, side: usize| {
+                if at == end && !line.closed { line.ends[side] } else { EndState::Parted }
             };
-            let line = Streamline {
-                points: order.clone().map(|k| line.points[k]).collect(),
-                widths: order.map(|k| line.widths[k]).collect(),
-                closed: false,
-                stops: [stop(part[0], from, 0), stop(part[1], n, 1)],
-            };
+            let ends = [state(part[0], from, 0), state(part[1], n, 1)];
+            let line = line.part((part[0]..part[1]).map(|k| k % n), ends);
             pieces.push(Piece { line, arms: [arm(part[0], false), arm(part[1] - 1, true)] });
         }
     }
@@ -290,7 +287,7 @@ fn joined(lines: &[Streamline], removed: &[Stretch], arms: &[Arm]) -> Vec<Stream
 }
 
 /// The pieces one after the other as their arms are linked.
-fn chained(pieces: Vec<Piece>, arms: &[Arm]) -> Vec<Streamline> {
+fn chained(pieces: Vec<Piece>, arms: &[Arm]) -> Vec<Line> {
     let mut of_arm = vec![None; arms.len()];
     for (p, piece) in pieces.iter().enumerate() {
         piece.arms.iter().enumerate().for_each(|(side, arm)| {
@@ -308,34 +305,20 @@ fn chained(pieces: Vec<Piece>, arms: &[Arm]) -> Vec<Streamline> {
             continue;
         }
         used[first] = true;
-        let mut line = oriented(&pieces[first].line, side);
+        let mut line = pieces[first].line.clone().oriented(side);
         let mut leaving = pieces[first].arms[1 - side];
         while let Some((arm, next)) = leaving.and_then(|arm| Some((arm, of_arm[arm ^ 1]?))) {
-            let bridge = bridge(&arms[arm].tail, &arms[arm ^ 1].tail);
-            line.widths.resize(line.points.len() + bridge.len(), f64::NAN);
-            line.points.extend(bridge);
+            line.lead_on(bridge(&arms[arm].tail, &arms[arm ^ 1].tail));
             let (p, side) = next;
             if used[p] {
                 line.closed = true;
                 break;
             }
             used[p] = true;
-            let piece = oriented(&pieces[p].line, side);
-            line.points.extend(piece.points);
-            line.widths.extend(piece.widths);
-            line.stops[1] = piece.stops[1];
+            line.append(pieces[p].line.clone().oriented(side));
             leaving = pieces[p].arms[1 - side];
         }
         out.push(line);
     }
     out
-}
-
-/// A line from one of its ends.
-fn oriented(line: &Streamline, side: usize) -> Streamline {
-    let mut line = line.clone();
-    if side == 1 {
-        line.reverse();
-    }
-    line
 }
