@@ -1,6 +1,6 @@
 //! The field of shapes whose directions are known.
 
-use fieldtrace::clean::{LineImage, clean};
+use fieldtrace::clean::{Decisions, LineImage, Noise, NoiseMap, clean};
 use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
 use fieldtrace::estimate::FieldEstimator;
 use fieldtrace::field::{Frame, FrameField, PolyVectorField};
