@@ -125,7 +125,8 @@ fn blur_of(
     if noise.grain() < 0.5 {
         return resampling.blur();
     }
-    blur::estimate(ink, mask, depth, line_width, noise.blur.hypot(noise.between(0.0, JOINING * resampling.scale)))
+    let expected = resampling.scale * noise.blur.hypot(noise.between(0.0, JOINING));
+    blur::estimate(ink, mask, depth, line_width, expected)
 }
 
 /// Gaussian blur.
