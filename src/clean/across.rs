@@ -16,6 +16,9 @@ const FOOT: f32 = 0.08;
 /// and between it and the next line there is less than this share, from which ink rises by at least the other.
 const VALLEY: f32 = 0.6;
 const RISE: f32 = 0.1;
+/// Where ink of less than [`VALLEY`] is the same to within this share for so many pixels more, the line lies on a tinted area.
+const EVEN: f32 = 0.01;
+const EVEN_FOR: i64 = 3;
 /// So many pixels around the middle of broad ink there is no less than [`MIDDLE`] of it.
 const AROUND: i64 = 2;
 /// Middles of lines within so many pixels, along and across, are looked at together: several times what a channel is off.
@@ -47,10 +50,13 @@ impl Cores {
         let tone = Raster::from_rows(width, height, [0.0; 3], |y, row| {
             for (x, tone) in row.iter_mut().enumerate().filter(|(x, _)| strength[(*x, y)] > least) {
                 let sum = match shortest(&strength, (x as i64, y as i64)) {
-                    Some(run) if run.most * MIDDLE <= strength[(x, y)] => run.pixels().fold([0.0; 3], |sum, p| {
-                        let here = at(p);
-                        [0, 1, 2].map(|c| sum[c] + here[c])
-                    }),
+                    Some(run) if run.most * MIDDLE <= strength[(x, y)] => {
+                        let ground = run.ground(&strength).map_or([0.0; 3], at);
+                        run.pixels().fold([0.0; 3], |sum, p| {
+                            let here = at(p);
+                            [0, 1, 2].map(|c| sum[c] + here[c] - ground[c])
+                        })
+                    }
                     None if is_broad(&strength, (x as i64, y as i64)) => at((x, y)),
                     _ => continue,
                 };
@@ -121,6 +127,13 @@ impl Run {
         (self.sides[0] + self.sides[1]) as f64 * f64::from((self.way.0.abs() + self.way.1.abs()) as i32).sqrt()
     }
 
+    /// The end with less ink, where the line lies on a tinted area.
+    fn ground(&self, strength: &Raster<f32>) -> Option<(usize, usize)> {
+        let ends = [self.pixels().next()?, self.pixels().last()?];
+        let tinted = ends.iter().all(|&end| strength[end] >= FOOT * self.most);
+        ends.into_iter().filter(|_| tinted).min_by(|&a, &b| strength[a].total_cmp(&strength[b]))
+    }
+
     fn pixels(&self) -> impl Iterator<Item = (usize, usize)> {
         let ((x, y), (dx, dy)) = (self.at, self.way);
         (-self.sides[0]..=self.sides[1]).map(move |k| ((x + k * dx) as usize, (y + k * dy) as usize))
@@ -150,8 +163,11 @@ fn foot(strength: &Raster<f32>, (x, y): (i64, i64), (dx, dy): (i64, i64)) -> Opt
         if least < VALLEY * own && ink > least + RISE * own {
             return Some((lowest, most));
         }
-        if ink < least {
+        if ink < least - EVEN * own {
             (least, lowest) = (ink, k);
+        }
+        if least < VALLEY * own && k - lowest >= EVEN_FOR {
+            return Some((lowest, most));
         }
         most = most.max(ink);
     }

@@ -110,13 +110,16 @@ impl<'a> Pens<'a> {
 
     /// The colour of the ink at a place of a line of a heading and a width.
     fn reading(&self, p: Point, heading: Vec2, width: f64, length: f64) -> Option<Reading> {
-        let (image, color) = (self.image, self.color_at(p)?);
+        let image = self.image;
         if self.is_unsure(p) {
+            let color = self.color_among([p].into_iter())?;
             // What grey lines lack of black on paper is pressure, and paper between the grains.
             let color = Some(self.unblurred(color, width)).filter(|color| !is_grey(*color)).unwrap_or(Color::BLACK);
             return Some(Reading { color, full: true, length });
         }
         let normal = if heading.hypot2() > 0.0 { heading.normalize().turn_90() } else { Vec2::new(1.0, 0.0) };
+        // Along the line the next pixel may be of another ink, across it is not.
+        let color = self.color_among([-1.0, 0.0, 1.0].map(|k| p + normal * (k * image.scale)).into_iter())?;
         let beside = |offset: f64| [-offset, offset].map(|offset| image.ink.sample(p + normal * offset));
         let [inner, outer] = [beside(0.25 * width), beside(0.5 * width + image.scale)];
         let middle = image.ink.sample(p);
@@ -136,14 +139,19 @@ impl<'a> Pens<'a> {
         Color(color.0.map(|v| (255.0 - f64::from(255 - v) / left).round() as u8))
     }
 
-    /// The colour of the ink at a place: that of the pixel around it with the most ink, or, so that grain does not count, of
-    /// its own on a scan.
-    fn color_at(&self, p: Point) -> Option<Color> {
-        let (x, y) = ((p.x / self.image.scale).floor() as i64, (p.y / self.image.scale).floor() as i64);
-        let reach = if self.is_unsure(p) { 0 } else { 1 };
-        let around = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)));
-        let pixels = around.filter_map(|(x, y)| self.colors.get(x, y));
+    /// The colour of the pixel with the most ink among those at some places.
+    fn color_among(&self, places: impl Iterator<Item = Point>) -> Option<Color> {
+        let pixel = |v: f64| (v / self.image.scale).floor() as i64;
+        let pixels = places.filter_map(|p| self.colors.get(pixel(p.x), pixel(p.y)));
         pixels.min_by_key(|rgb| rgb.iter().min().copied()).map(Color)
+    }
+
+    /// The colour of a solid region at a place: of the pixel around it with the most ink, or, so that grain does not count,
+    /// of its own on a scan.
+    fn color_at(&self, p: Point) -> Option<Color> {
+        let steps = if self.is_unsure(p) { 0..=0 } else { -1..=1 };
+        let step = |x: i32, y: i32| Vec2::new(x.into(), y.into()) * self.image.scale;
+        self.color_among(steps.clone().flat_map(|y| steps.clone().map(move |x| p + step(x, y))))
     }
 
     /// The middle of the colours inside a solid region.
@@ -344,13 +352,17 @@ fn clusters(readings: &[Reading], least: f64) -> Vec<Color> {
     }
     clusters.retain(|c| length(c) >= least);
     clusters.sort_by(|a, b| length(b).total_cmp(&length(a)));
-    clusters.into_iter().filter_map(full_ink).collect()
+    clusters.into_iter().filter_map(|cluster| full_ink(cluster, least)).collect()
 }
 
-/// The colour of full ink: the median of where it is seen, or else the strongest ink.
-fn full_ink(readings: Vec<Reading>) -> Option<Color> {
-    let full: Vec<(Color, f64)> = readings.iter().filter(|r| r.full).map(|r| (r.color, r.length)).collect();
-    if full.is_empty() { strongest(readings) } else { median(full) }
+/// The colour of full ink: the median of where it is seen, or else the strongest ink. What shows it for less than `least` in
+/// length is where thin lines meet, and their inks mix.
+fn full_ink(readings: Vec<Reading>, least: f64) -> Option<Color> {
+    let full: Vec<Reading> = readings.iter().filter(|reading| reading.full).copied().collect();
+    if length(&full) < least {
+        return strongest(readings);
+    }
+    median(full.into_iter().map(|reading| (reading.color, reading.length)).collect())
 }
 
 /// The colour of lines that are too thin to show full ink: the median of the stronger half.
