@@ -55,7 +55,7 @@ impl ColorPage {
             (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
         };
         let inked_groups = |x: usize, y: usize| {
-            let inked = near(x, y, 2).filter(|&(i, j)| ink.get(i, j).is_some_and(|v| v > 0.6));
+            let inked = near(x, y, 3).filter(|&(i, j)| ink.get(i, j).is_some_and(|v| v > 0.6));
             inked.filter_map(|(i, j)| self.group.get(i, j)).fold(0u128, |seen, group| seen | 1 << group)
         };
         let dilated = |x: i64, y: i64| {

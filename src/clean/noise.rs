@@ -51,7 +51,7 @@ fn ramp(value: f64, [sure, unsure]: [f64; 2]) -> f64 {
 
 /// Ink is a render's up to the first deviation and a pencil's from the second on; empirical, guarded by the sweeps of
 /// `tests/papers.rs`.
-const ALONG: [f64; 2] = [0.025, 0.038];
+const ALONG: [f64; 2] = [0.024, 0.03];
 const ACROSS: [f64; 2] = [0.1, 0.2];
 const BLUR: [f64; 2] = [0.85, 1.0];
 
