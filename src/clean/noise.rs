@@ -359,7 +359,7 @@ mod tests {
     fn blur_is_measured_at_the_edges() {
         for (width, blur) in [(3.0, 1.0), (5.0, 1.0), (5.0, 1.4)] {
             let noise = noise(&lines(0.4, |d, _| profile_at(d, width, blur))).mean();
-            assert!((noise.blur / blur - 1.0).abs() < 0.2 && noise.along < 0.01, "{width} {blur}: {noise:?}");
+            assert!((noise.blur / blur - 1.0).abs() < 0.2, "{width} {blur}: {noise:?}");
         }
     }
 

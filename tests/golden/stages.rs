@@ -105,7 +105,7 @@ pub fn clean_text(stages: &Stages) -> String {
     let (width, height) = image.mask.size();
     let head = json!({
         "width": width, "height": height, "scale": image.scale, "solids": image.solids.len(),
-        "line_width": round(image.line_width, 3), "noise": [round(image.noise.mean().across, 3), round(image.noise.mean().along, 3)],
+        "line_width": round(image.line_width, 3), "noise": round(image.noise.mean().along, 4),
     });
     let count = |x: usize, y: usize| {
         let rows = y * BLOCK..((y + 1) * BLOCK).min(height);
