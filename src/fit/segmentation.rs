@@ -1,17 +1,13 @@
 //! A section as the cheapest chain of lines, arcs and cubics.
 //!
-//! Dynamic programming over knots along the section. A piece costs a fixed price for its kind plus what it takes to tell
-//! where its points lie beside it (`price`): a description length, so that neither the number of pieces nor the error is
-//! bought at any price of the other.
-//!
-//! A hand trembles, and what it draws then falls into many pieces. So a section of more than a few is looked at again,
-//! between the joints that were found: a wave beside a piece is told by its height where that is cheaper than its points.
+//! Dynamic programming over knots along the section. A piece costs a fixed price for its kind plus the
+//! weighted squared distance of its points in units of the tolerance: a description length, so that neither
+//! the number of pieces nor the error is bought at any price of the other.
 
 use super::Tolerance;
 use super::arc::fit_circle;
 use super::cubic::{Ends, fit_cubic};
 use super::line::fit_line;
-use super::price::{Misfit, Offset, Prices};
 use super::samples::Samples;
 use kurbo::Point;
 
@@ -25,8 +21,6 @@ const HOPELESS: f64 = 60.0;
 const DOUBTFUL: f64 = 80.0;
 /// The most knots that a section is given.
 const MOST_KNOTS: f64 = 140.0;
-/// One arc turns by less than this, radians.
-pub(super) const MOST_SWEEP: f64 = 5.5;
 
 /// The kind of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,18 +40,8 @@ pub(super) struct Piece {
 
 /// The cheapest chain of pieces over all samples. Needs at least two samples.
 pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
-    let prices = Prices::new(samples, tolerance);
-    let (pieces, cost) = chain(samples, &knots(samples, tolerance), &prices, tolerance);
-    if pieces.len() < 2 {
-        return pieces;
-    }
-    let joints: Vec<usize> = pieces.iter().map(|p| p.from).chain([samples.len() - 1]).collect();
-    let (calmer, less) = chain(samples, &joints, &prices.with_tremor(), tolerance);
-    if less < cost { calmer } else { pieces }
-}
-
-/// The cheapest chain of pieces that meet at knots, and its cost.
-fn chain(samples: &Samples, knots: &[usize], prices: &Prices, tolerance: Tolerance) -> (Vec<Piece>, f64) {
+    let knots = knots(samples, tolerance);
+    let deviation = tolerance.deviation(samples);
     let mut cost = vec![f64::INFINITY; knots.len()];
     let mut best: Vec<Option<(usize, Kind)>> = vec![None; knots.len()];
     cost[0] = 0.0;
@@ -65,7 +49,7 @@ fn chain(samples: &Samples, knots: &[usize], prices: &Prices, tolerance: Toleran
         let mut misses = 0;
         for j in i + 1..knots.len() {
             let worth = cost[j] - cost[i];
-            let (price, kind) = cheapest(samples, knots[i], knots[j], prices, tolerance, worth);
+            let (price, kind) = cheapest(samples, knots[i], knots[j], tolerance, deviation, worth);
             if cost[i] + price < cost[j] {
                 cost[j] = cost[i] + price;
                 best[j] = Some((i, kind));
@@ -83,7 +67,7 @@ fn chain(samples: &Samples, knots: &[usize], prices: &Prices, tolerance: Toleran
         j = i;
     }
     pieces.reverse();
-    (pieces, cost[knots.len() - 1])
+    pieces
 }
 
 /// Indices of samples at which pieces may meet: about a line width apart.
@@ -110,25 +94,29 @@ fn cheapest(
     samples: &Samples,
     from: usize,
     to: usize,
-    prices: &Prices,
     tolerance: Tolerance,
+    deviation: f64,
     worth: f64,
 ) -> (f64, Kind) {
-    let weight = samples.moments(from, to).w;
-    let price =
-        |prices: &Prices, error: f64, offsets: &dyn Fn() -> Vec<Offset>| prices.of(Misfit { error, weight }, offsets);
+    // Neighbouring points share ink: about one in a line width is independent.
+    let independent = (samples.length() / samples.len() as f64 / tolerance.width).min(1.0);
+    let price = |base: f64, error: f64| base + error * independent / (deviation * deviation);
     let fitted = fit_line(samples, from, to);
-    let line = LINE + price(&prices.of_lines(), fitted.error, &|| samples.offsets(from, to, |p| fitted.offset(p)));
+    let mut line = price(LINE, fitted.error);
+    if line > ARC
+        && let Some(error) = fitted.error_beside_stairs(samples, from, to, tolerance)
+    {
+        line = line.min(price(LINE, error));
+    }
     let mut cheapest = (line, Kind::Line);
     if line <= ARC {
         return cheapest;
     }
-    if let Some(circle) = fit_circle(samples, from, to)
-        && circle.radius > 0.3 * tolerance.width
-        && samples.arc[to] - samples.arc[from] < MOST_SWEEP * circle.radius
-    {
-        let arc = ARC + price(prices, circle.error, &|| samples.offsets(from, to, |p| circle.offset(p)));
-        if arc < cheapest.0 {
+    if let Some(circle) = fit_circle(samples, from, to) {
+        let length = samples.arc[to] - samples.arc[from];
+        let sweep = length / circle.radius;
+        let arc = price(ARC, circle.error);
+        if arc < cheapest.0 && sweep < 5.5 && circle.radius > 0.3 * tolerance.width {
             cheapest = (arc, Kind::Arc);
         }
     }
@@ -137,14 +125,13 @@ fn cheapest(
     }
     let ends = Ends { start: near(samples, from), end: near(samples, to), start_tangent: None, end_tangent: None };
     let fitted = fit_cubic(samples, from, to, &ends, 2);
-    let of_error = |error: f64| CUBIC + price(prices, error, &|| fitted.offsets(samples, from, to));
-    let cubic = of_error(fitted.error);
+    let cubic = price(CUBIC, fitted.error);
     if cubic >= cheapest.0 {
         return cheapest;
     }
     // What repeats along a line must not make it a curve.
     let closely = line < cubic + DOUBTFUL;
-    let cubic = if closely { cubic.max(of_error(fitted.closer_error(samples, from, to))) } else { cubic };
+    let cubic = if closely { cubic.max(price(CUBIC, fitted.closer_error(samples, from, to))) } else { cubic };
     if cubic < cheapest.0 { (cubic, Kind::Cubic) } else { cheapest }
 }
 
