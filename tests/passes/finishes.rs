@@ -49,7 +49,7 @@ fn without_its_pass_all_ink_is_black() {
 
 #[test]
 fn on_a_grey_page_nothing_is_coloured() {
-    assert_eq!(walked(vec![bar(10.0, 45.0, 3.0)]).changes("colour"), None);
+    assert_eq!(walked(vec![bar(10.0, 45.0, 3.0)]).changes("colour"), Some(0));
 }
 
 /// A brush stroke that swells from a point to a width, under some kind of widths.

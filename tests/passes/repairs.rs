@@ -339,8 +339,8 @@ fn a_line_of_one_pen_stays_whole_under_another() {
 }
 
 #[test]
-fn on_a_grey_page_no_colour_is_asked_for() {
-    assert!(walked(vec![bar(0.0, 45.0, 3.0)]).alone("colour change").is_none());
+fn on_a_grey_page_no_line_changes_its_colour() {
+    leaves_alone("colour change", &walked(vec![bar(0.0, 45.0, 3.0)]));
 }
 
 /// A bar and an arc that leaves it along its tangent, walked back to where the inks become one.
