@@ -30,6 +30,8 @@ const DEEPER: f64 = 1.15;
 const BROAD_SHARE: f64 = 0.02;
 /// An elongated region is solid only if it is more than this many times as wide as the other lines.
 const BROADEST: f64 = 5.0;
+/// A region is a knot where lines meet, and no solid, if they leave it over more than this share of its rim.
+const KNOT: f64 = 0.5;
 /// Ink beside a solid region that is less than this many squares of the line width is its corner, not a line.
 const CORNER: f64 = 4.0;
 
@@ -70,7 +72,9 @@ pub(super) fn take(mask: &mut Mask, ink: &mut Raster<f32>, depth: &Raster<f32>, 
         return (Raster::zeroed(mask.width(), mask.height()), Vec::new());
     }
     let (_, labels, count) = regions(mask, depth, radius, line_width);
-    let solid = solid_labels(&labels, count, depth, line_width);
+    let knots = knots(&labels, count, mask);
+    let mut solid = solid_labels(&labels, count, depth, line_width);
+    solid.iter_mut().zip(knots).for_each(|(solid, knot)| *solid &= !knot);
     let boxes = bounding_boxes(&labels, count);
     let fills = (1..=count).filter(|&label| solid[label]).map(|label| {
         let outline = outline(&labels, label as u32, mask, ink, boxes[label]);
@@ -187,6 +191,23 @@ fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>, line_width: 
         .collect();
     solid[0] = false;
     solid
+}
+
+/// Which labels have rims that are mostly ink of lines that leave there.
+fn knots(labels: &Labels, count: usize, mask: &Mask) -> Vec<bool> {
+    let (mut rim, mut inked) = (vec![0usize; count + 1], vec![0usize; count + 1]);
+    for (x, y, label) in labels.enumerate_pixels().filter(|(_, _, label)| label[0] > 0) {
+        for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+            let (x, y) = (i64::from(x) + dx, i64::from(y) + dy);
+            // The page's edge is no rim.
+            let Some(ink) = mask.get(x, y) else { continue };
+            if labels.get_pixel(x as u32, y as u32)[0] == 0 {
+                rim[label[0] as usize] += 1;
+                inked[label[0] as usize] += usize::from(ink);
+            }
+        }
+    }
+    rim.iter().zip(inked).map(|(&rim, inked)| inked as f64 > KNOT * rim as f64).collect()
 }
 
 /// The outline of a region: the half-ink contour (marching squares) as closed polygons, holes included.
