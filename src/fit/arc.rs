@@ -19,6 +19,11 @@ impl FittedCircle {
         self.centre + (p - self.centre).normalize() * self.radius
     }
 
+    /// How far `p` lies outside.
+    pub fn offset(&self, p: Point) -> f64 {
+        (p - self.centre).hypot() - self.radius
+    }
+
     /// Unit tangent at the point nearest to `p`, turning from x towards y.
     pub fn tangent(&self, p: Point) -> Vec2 {
         (p - self.centre).normalize().turn_90()

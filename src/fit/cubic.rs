@@ -5,13 +5,13 @@
 //! distance across the curve (tangent distance minimisation: Wang, Pottmann & Liu 2006), which converges in a
 //! few steps.
 
-use super::samples::Samples;
+use super::price::Offset;
+use super::samples::{CLOSER, Samples};
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv, Point, Vec2};
 
 /// At most this many samples carry a fit; more add nothing that the ink knows.
 const CARRIERS: usize = 40;
-/// As many tell the error of a curve more closely, placed by a table of the curve's length.
-const CLOSER: usize = 160;
+/// Pieces of a table of a curve's length.
 const TABLE: usize = 32;
 
 /// What is known about a cubic's ends.
@@ -69,6 +69,11 @@ impl FittedCubic {
         if to - from <= 2 * CARRIERS {
             return self.error;
         }
+        self.offsets(samples, from, to).iter().map(|o| o.weight * o.count * o.by * o.by).sum()
+    }
+
+    /// Where samples `from..=to` lie beside the curve.
+    pub fn offsets(&self, samples: &Samples, from: usize, to: usize) -> Vec<Offset> {
         let stride = (to - from).div_ceil(CLOSER).max(1);
         let indices: Vec<usize> = (from..to).step_by(stride).skip(1).collect();
         let points = (0..=TABLE).map(|i| self.curve.eval(i as f64 / TABLE as f64));
@@ -82,7 +87,13 @@ impl FittedCubic {
         };
         let mut parameters: Vec<f64> = indices.iter().map(parameter).collect();
         reparametrise(samples, &indices, &mut parameters, &self.curve);
-        squared_distance(samples, &indices, &parameters, &self.curve) * stride as f64
+        let slope = self.curve.deriv();
+        let offset = |(&k, &t): (&usize, &f64)| {
+            let off = samples.points[k] - self.curve.eval(t);
+            let side = slope.eval(t).to_vec2().cross(off).signum();
+            Offset { weight: samples.weights[k], count: stride as f64, by: side * off.hypot() }
+        };
+        indices.iter().zip(&parameters).map(offset).collect()
     }
 }
 

@@ -7,7 +7,7 @@ use super::Tolerance;
 use super::arc::fit_circle;
 use super::line::fit_line;
 use super::samples::Samples;
-use super::segmentation::{Kind, Piece};
+use super::segmentation::{Kind, MOST_SWEEP, Piece};
 use kurbo::{Point, Vec2};
 
 /// Points may lie this far off an arc, root mean square in pixels, whatever else is taken for noise: rasterisers draw
@@ -18,8 +18,6 @@ const LEAST_TURN: f64 = 0.14;
 /// The most pieces that one fillet replaces.
 const REPLACED: usize = 4;
 const ROUNDS: usize = 6;
-/// One arc turns by less than this, radians.
-const MOST_SWEEP: f64 = 5.5;
 
 /// A line to touch: a point on it and its unit direction.
 pub(super) type Tangent = (Point, Vec2);

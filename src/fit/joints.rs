@@ -1,14 +1,14 @@
-//! Pieces become segments: joints are placed and made sharp or smooth, then curves are fitted between them.
+//! Where pieces meet, sharply or smoothly, and the segments between their joints.
 
 use super::Tolerance;
 use super::arc::{arc_from_tangent, end_tangent, fit_circle};
 use super::cubic::{Ends, fit_cubic, tangents};
-use super::fillet::{CHORDS, Fillet, fit_fillet, rounded};
+use super::fillet::{Fillet, fit_fillet};
 use super::line::fit_line;
-use super::samples::Samples;
+use super::samples::{Samples, WORST};
 use super::segmentation::{Kind, Piece, near};
 use crate::drawing::Segment;
-use kurbo::{Line, ParamCurveNearest, Point, Rect, Shape, Vec2};
+use kurbo::{Line, Point, Rect, Shape, Vec2};
 
 /// Pieces that meet at a larger angle than this (18 degrees) make a corner.
 pub(super) const CORNER: f64 = 0.31;
@@ -20,113 +20,41 @@ const ARC_KINK: f64 = 0.026;
 /// One cubic turns no further than this (about 100 degrees) of an arc that is not exact.
 const QUARTER: f64 = 1.75;
 
-/// A joined curve may miss its points by this many times what is taken for noise, root mean square.
-const MISFIT: f64 = 1.2;
 /// How far to both sides of a joint of curves its course is looked at, in line widths.
 const COURSE: f64 = 2.0;
-/// Lines shorter than this many line widths give way to a curve beside them.
-const SHORT: f64 = 5.0;
 /// How far a cubic may leave the box of its samples, in pixels; and how often its handles are shortened by a quarter.
 const ASTRAY: f64 = 2.0;
 const SHORTENED: usize = 30;
-/// How many pieces of a section are given more freedom.
-const REPAIRS: usize = 4;
-
 /// What a piece says about its ends before joints are placed.
 #[derive(Clone, Copy, Debug)]
-struct Draft {
-    piece: Piece,
+pub(super) struct Draft {
+    pub piece: Piece,
     start: Point,
     end: Point,
-    start_tangent: Vec2,
+    pub start_tangent: Vec2,
     end_tangent: Vec2,
     /// For lines, a point on the line.
     on_line: Point,
+    /// Standard deviation of its points about it.
+    pub deviation: f64,
 }
 
 /// A joint between pieces, or an end of the section.
 #[derive(Clone, Copy, Debug)]
-struct Joint {
-    point: Point,
+pub(super) struct Joint {
+    pub point: Point,
     /// The common tangent; `None` at a corner or a loose end.
-    tangent: Option<Vec2>,
+    pub tangent: Option<Vec2>,
 }
 
-/// The segments of a section. `closed` sections join their last piece to their first. Ends of an open section
-/// keep to `ends` where given.
-///
-/// A tangent taken over from a neighbour can hold a curve off its points. Then a short line beside it gives way and
-/// becomes a curve itself, or else the curve is cut in two.
-pub(super) fn join(
+/// The joints of pieces in a row.
+pub(super) fn placed(
     samples: &Samples,
-    pieces: &[Piece],
+    drafts: &[Draft],
     closed: bool,
     ends: [Option<Point>; 2],
     tolerance: Tolerance,
-) -> Vec<Segment> {
-    let mut pieces = rounded(samples, pieces, closed, tolerance);
-    let deviation = tolerance.deviation(samples);
-    for _ in 0..REPAIRS {
-        let segments = join_once(samples, &pieces, closed, ends, tolerance);
-        let misfits = pieces.iter().zip(&segments).map(|(piece, of_piece)| {
-            let noise = if let [Segment::Arc(_)] = of_piece[..] { deviation.max(CHORDS) } else { deviation };
-            misfit(samples, *piece, of_piece) / noise
-        });
-        let worst = misfits.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        match worst {
-            Some((k, misfit)) if misfit > MISFIT && repair(samples, &mut pieces, k, closed, tolerance) => {}
-            _ => return segments.concat(),
-        }
-    }
-    join_once(samples, &pieces, closed, ends, tolerance).concat()
-}
-
-/// Root mean square distance of a curved piece's samples from its segments; 0 for a line.
-fn misfit(samples: &Samples, piece: Piece, segments: &[Segment]) -> f64 {
-    if piece.kind == Kind::Line {
-        return 0.0;
-    }
-    let curve: Vec<Point> = segments.iter().flat_map(|s| (0..=32).map(|k| s.eval(f64::from(k) / 32.0))).collect();
-    let (mut sum, mut weight) = (0.0, 0.0);
-    for k in piece.from..=piece.to {
-        let p = samples.points[k];
-        let nearest = curve.windows(2).map(|w| Line::new(w[0], w[1]).nearest(p, 1e-6).distance_sq);
-        sum += samples.weights[k] * nearest.fold(f64::MAX, f64::min);
-        weight += samples.weights[k];
-    }
-    (sum / weight.max(1e-9)).sqrt()
-}
-
-/// Gives a piece that misses its points more freedom; `false` when there is none to give.
-fn repair(samples: &Samples, pieces: &mut Vec<Piece>, k: usize, closed: bool, tolerance: Tolerance) -> bool {
-    let n = pieces.len();
-    let neighbours = [(k > 0 || closed).then(|| (k + n - 1) % n), (k + 1 < n || closed).then(|| (k + 1) % n)];
-    let is_short = |p: &Piece| samples.arc[p.to] - samples.arc[p.from] < SHORT * tolerance.width;
-    let short: Vec<usize> =
-        neighbours.into_iter().flatten().filter(|&j| pieces[j].kind == Kind::Line && is_short(&pieces[j])).collect();
-    if !short.is_empty() {
-        short.iter().for_each(|&j| pieces[j].kind = Kind::Cubic);
-        return true;
-    }
-    let Piece { from, to, .. } = pieces[k];
-    let middle = samples.arc.partition_point(|&a| a < 0.5 * (samples.arc[from] + samples.arc[to]));
-    if middle < from + 3 || middle + 3 > to {
-        return false;
-    }
-    pieces
-        .splice(k..=k, [Piece { from, to: middle, kind: Kind::Cubic }, Piece { from: middle, to, kind: Kind::Cubic }]);
-    true
-}
-
-/// The segments of each piece, joined.
-fn join_once(
-    samples: &Samples,
-    pieces: &[Piece],
-    closed: bool,
-    ends: [Option<Point>; 2],
-    tolerance: Tolerance,
-) -> Vec<Vec<Segment>> {
-    let drafts: Vec<Draft> = pieces.iter().map(|&p| draft(samples, p, tolerance)).collect();
+) -> Vec<Joint> {
     let n = drafts.len();
     let mut joints: Vec<Joint> = Vec::with_capacity(n + 1);
     for k in 0..=n {
@@ -140,20 +68,29 @@ fn join_once(
     for (k, draft) in drafts.iter().enumerate() {
         align_tangents(draft, k, closed, &mut joints);
     }
-    round_corners(samples, &drafts, closed, &mut joints);
-    drafts.iter().enumerate().map(|(k, d)| segments(samples, d, joints[k], joints[k + 1], tolerance)).collect()
+    round_corners(samples, drafts, closed, &mut joints);
+    joints
 }
 
-fn draft(samples: &Samples, piece: Piece, tolerance: Tolerance) -> Draft {
+pub(super) fn draft(samples: &Samples, piece: Piece, tolerance: Tolerance) -> Draft {
     let (from, to) = (piece.from, piece.to);
     let (start, end) = (near(samples, from), near(samples, to));
+    let deviation = |error: f64| (error / samples.moments(from, to).w.max(1e-9)).sqrt();
     match piece.kind {
         Kind::Line => {
             let line = fit_line(samples, from, to);
             let d = on_axis(line.direction, (end - start).hypot(), tolerance);
             let foot = |p: Point| line.point + d * (p - line.point).dot(d);
             let (start, end) = (foot(start), foot(end));
-            Draft { piece, start, end, start_tangent: d, end_tangent: d, on_line: line.point }
+            Draft {
+                piece,
+                start,
+                end,
+                start_tangent: d,
+                end_tangent: d,
+                on_line: line.point,
+                deviation: deviation(line.error),
+            }
         }
         Kind::Arc | Kind::Cubic => {
             let circle = if piece.kind == Kind::Arc { fit_circle(samples, from, to) } else { None };
@@ -162,11 +99,20 @@ fn draft(samples: &Samples, piece: Piece, tolerance: Tolerance) -> Draft {
                 let tangent = |p: Point| circle.tangent(p) * turn;
                 let (start, end) = (circle.foot(start), circle.foot(end));
                 let (start_tangent, end_tangent) = (tangent(start), tangent(end));
-                return Draft { piece, start, end, start_tangent, end_tangent, on_line: start };
+                return Draft {
+                    piece,
+                    start,
+                    end,
+                    start_tangent,
+                    end_tangent,
+                    on_line: start,
+                    deviation: deviation(circle.error),
+                };
             }
             let ends = Ends { start, end, start_tangent: None, end_tangent: None };
-            let (start_tangent, end_tangent) = tangents(&fit_cubic(samples, from, to, &ends, 6).curve);
-            Draft { piece, start, end, start_tangent, end_tangent, on_line: start }
+            let fitted = fit_cubic(samples, from, to, &ends, 6);
+            let (start_tangent, end_tangent) = tangents(&fitted.curve);
+            Draft { piece, start, end, start_tangent, end_tangent, on_line: start, deviation: deviation(fitted.error) }
         }
     }
 }
@@ -246,7 +192,7 @@ fn align_tangents(draft: &Draft, k: usize, closed: bool, joints: &mut [Joint]) {
 }
 
 /// Changes a joint; the first and the last of a closed section are one.
-fn change(joints: &mut [Joint], k: usize, closed: bool, f: impl Fn(&mut Joint)) {
+pub(super) fn change(joints: &mut [Joint], k: usize, closed: bool, f: impl Fn(&mut Joint)) {
     let n = joints.len() - 1;
     f(&mut joints[k]);
     if closed && (k == 0 || k == n) {
@@ -279,14 +225,21 @@ fn round_corners(samples: &Samples, drafts: &[Draft], closed: bool, joints: &mut
 }
 
 /// The segments of one piece between its joints: one, or several where a cubic cannot turn so far.
-fn segments(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance: Tolerance) -> Vec<Segment> {
+pub(super) fn segments(
+    samples: &Samples,
+    draft: &Draft,
+    from: Joint,
+    to: Joint,
+    tolerance: Tolerance,
+    deviation: f64,
+) -> Vec<Segment> {
     let piece = draft.piece;
     if piece.kind == Kind::Line {
         return vec![Segment::Line(Line::new(from.point, to.point))];
     }
     let circle = if piece.kind == Kind::Arc { fit_circle(samples, piece.from, piece.to) } else { None };
     let Some(circle) = circle else { return vec![cubic(samples, piece, from, to)] };
-    if let Some(arc) = smooth_arc(samples, draft, from, to, tolerance) {
+    if let Some(arc) = smooth_arc(samples, draft, from, to, tolerance, deviation) {
         return vec![arc];
     }
     let length = samples.arc[piece.to] - samples.arc[piece.from];
@@ -323,7 +276,14 @@ fn cubic(samples: &Samples, piece: Piece, from: Joint, to: Joint) -> Segment {
 }
 
 /// The arc between two joints, if it keeps to their tangents and to the samples.
-fn smooth_arc(samples: &Samples, draft: &Draft, from: Joint, to: Joint, tolerance: Tolerance) -> Option<Segment> {
+fn smooth_arc(
+    samples: &Samples,
+    draft: &Draft,
+    from: Joint,
+    to: Joint,
+    tolerance: Tolerance,
+    deviation: f64,
+) -> Option<Segment> {
     // The chord turns half of the arc's angle away from each tangent: the mean of what both ends ask for.
     let chord = to.point - from.point;
     // All the way around there is none.
@@ -345,5 +305,5 @@ fn smooth_arc(samples: &Samples, draft: &Draft, from: Joint, to: Joint, toleranc
     let run = draft.piece.from..=draft.piece.to;
     let off = |k: usize| ((samples.points[k] - arc.center).hypot() - arc.radii.x).abs() * samples.weights[k];
     let worst = run.map(off).fold(0.0, f64::max);
-    (worst < 2.0 * tolerance.fit).then_some(Segment::Arc(arc))
+    (worst < (2.0 * tolerance.fit).max(WORST * deviation.max(draft.deviation))).then_some(Segment::Arc(arc))
 }

@@ -1,17 +1,19 @@
 //! From trails to strokes.
 //!
 //! A trail is split at its corners. Each section becomes the chain of lines, arcs and cubics that explains its
-//! points best at the least cost (`segmentation`); then joints are made sharp or smooth, lines that nearly keep
-//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`). Where outlines are
+//! points best at the least cost (`segmentation`, `price`); then joints are made sharp or smooth, lines that nearly keep
+//! to an axis are put on it, and every curve is fitted again between its final joints (`joints`, `chain`). Where outlines are
 //! asked for, the edges of each stroke are fitted in the same way (`outline`).
 
 mod arc;
+mod chain;
 mod cubic;
 mod dashes;
 mod fillet;
 mod joints;
 mod line;
 mod outline;
+mod price;
 mod rectangle;
 mod samples;
 mod segmentation;
@@ -25,15 +27,12 @@ use crate::drawing::{Centreline, Dashes, Drawing, Fill, Stroke};
 use crate::error::Result;
 use crate::graph::StrokeGraph;
 use crate::options::{Options, StrokeWidth};
+use price::QUARTER_STEPS;
 use rayon::prelude::*;
+use samples::Samples;
 
-/// Deviation of points that is always taken for noise, as a share of the fit tolerance: on a clean render, and on a
-/// scan, where grain moves whole stretches of a line and neighbouring points do not show it.
+/// Deviation of points that is always taken for noise, as a share of the fit tolerance.
 const STEADINESS: f64 = 0.27;
-const STEADINESS_NOISY: f64 = 0.3;
-
-/// The deviation of an edge that was drawn in steps of a quarter of a pixel of the scan: `1 / (4 sqrt 12)`.
-const STAIRS: f64 = 0.072;
 
 /// How closely to fit, in pixels of the line image.
 #[derive(Clone, Copy, Debug)]
@@ -51,8 +50,13 @@ struct Tolerance {
 impl Tolerance {
     /// Deviation of a section's points from its curves that is taken for noise: a part of the tolerance, or what
     /// the points themselves scatter by.
-    fn deviation(&self, samples: &samples::Samples) -> f64 {
+    fn scatter(&self, samples: &Samples) -> f64 {
         self.steadiness.max(samples.scatter(0.7 * self.width))
+    }
+
+    /// The same with what the ink itself cannot tell.
+    fn deviation(&self, samples: &Samples) -> f64 {
+        self.scatter(samples).hypot(samples.noise)
     }
 }
 
@@ -69,10 +73,8 @@ enum Drawn {
 pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Drawing> {
     let page = &graph.page;
     let fit = (options.detail * page.line_width).max(0.1);
-    // Only what was scanned is blurred.
-    let steadiness = if page.blur > 0.0 { STEADINESS_NOISY } else { STEADINESS } * fit;
-    let tolerance =
-        Tolerance { fit, width: page.line_width, steadiness: steadiness.max(STAIRS * page.scale), pixel: page.scale };
+    let steadiness = (STEADINESS * fit).max(QUARTER_STEPS * page.scale);
+    let tolerance = Tolerance { fit, width: page.line_width, steadiness, pixel: page.scale };
     let outlined = options.width == StrokeWidth::Outline;
     let fitted: Vec<Option<Drawn>> = graph
         .trails

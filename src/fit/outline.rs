@@ -5,7 +5,7 @@
 //! smooth section: at corners, and where it crosses itself, sections overlap with round ends.
 
 use super::Tolerance;
-use super::joints::join;
+use super::chain::join;
 use super::samples::Samples;
 use super::segmentation::segment;
 use crate::clean::unblurred_width;

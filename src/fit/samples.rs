@@ -1,13 +1,16 @@
 //! The points of a section with weights, and sums over runs of them in constant time.
 
+use super::price::Offset;
 use crate::graph::TrailPoint;
 use kurbo::{Point, Vec2};
 use std::ops::RangeInclusive;
 
 /// Weight of a point inside a junction, where the ink does not tell where the line is.
 const JUNCTION_WEIGHT: f64 = 0.01;
+/// At most this many points tell where the others lie beside a curve.
+pub(super) const CLOSER: usize = 160;
 /// No point of a curve lies further off it than this many times what is taken for noise.
-const WORST: f64 = 3.0;
+pub(super) const WORST: f64 = 3.0;
 
 /// Points along a section.
 #[derive(Clone, Debug)]
@@ -16,6 +19,8 @@ pub(super) struct Samples {
     pub weights: Vec<f64>,
     /// Arc length up to each point.
     pub arc: Vec<f64>,
+    /// Standard deviation of the ink's edge about a smooth line, in pixels.
+    pub noise: f64,
     centre: Point,
     sums: Vec<Moments>,
 }
@@ -67,7 +72,7 @@ impl Samples {
         for k in 0..points.len() {
             sums[k + 1] = sums[k].each(Moments::of(points[k] - centre, weights[k]), |a, b| a + b);
         }
-        Self { points, weights, arc, centre, sums }
+        Self { points, weights, arc, noise: 0.0, centre, sums }
     }
 
     /// Length of the way up to each of some points.
@@ -82,7 +87,16 @@ impl Samples {
     /// Samples from points of a trail.
     pub fn from_trail(points: &[TrailPoint]) -> Self {
         let weight = |p: &TrailPoint| if p.width.is_finite() { 1.0 } else { JUNCTION_WEIGHT };
-        Self::new(points.iter().map(|p| p.point).collect(), points.iter().map(weight).collect())
+        let samples = Self::new(points.iter().map(|p| p.point).collect(), points.iter().map(weight).collect());
+        let noise: f64 = points.iter().map(|p| weight(p) * p.noise).sum();
+        Self { noise: noise / samples.weights.iter().sum::<f64>().max(JUNCTION_WEIGHT), ..samples }
+    }
+
+    /// Where points `from..=to`, or as many of them as tell enough, lie beside a curve.
+    pub fn offsets(&self, from: usize, to: usize, off: impl Fn(Point) -> f64) -> Vec<Offset> {
+        let stride = (to - from).div_ceil(CLOSER).max(1);
+        let offset = |k: usize| Offset { weight: self.weights[k], count: stride as f64, by: off(self.points[k]) };
+        (from..=to).step_by(stride).map(offset).collect()
     }
 
     pub fn len(&self) -> usize {

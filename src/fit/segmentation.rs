@@ -1,13 +1,17 @@
 //! A section as the cheapest chain of lines, arcs and cubics.
 //!
-//! Dynamic programming over knots along the section. A piece costs a fixed price for its kind plus the
-//! weighted squared distance of its points in units of the tolerance: a description length, so that neither
-//! the number of pieces nor the error is bought at any price of the other.
+//! Dynamic programming over knots along the section. A piece costs a fixed price for its kind plus what it takes to tell
+//! where its points lie beside it (`price`): a description length, so that neither the number of pieces nor the error is
+//! bought at any price of the other.
+//!
+//! A hand trembles, and what it draws then falls into many pieces. So a section of more than a few is looked at again,
+//! between the joints that were found: a wave beside a piece is told by its height where that is cheaper than its points.
 
 use super::Tolerance;
 use super::arc::fit_circle;
 use super::cubic::{Ends, fit_cubic};
 use super::line::fit_line;
+use super::price::{Misfit, Offset, Prices};
 use super::samples::Samples;
 use kurbo::Point;
 
@@ -21,6 +25,8 @@ const HOPELESS: f64 = 60.0;
 const DOUBTFUL: f64 = 80.0;
 /// The most knots that a section is given.
 const MOST_KNOTS: f64 = 140.0;
+/// One arc turns by less than this, radians.
+pub(super) const MOST_SWEEP: f64 = 5.5;
 
 /// The kind of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +46,18 @@ pub(super) struct Piece {
 
 /// The cheapest chain of pieces over all samples. Needs at least two samples.
 pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
-    let knots = knots(samples, tolerance);
-    let deviation = tolerance.deviation(samples);
+    let prices = Prices::new(samples, tolerance);
+    let (pieces, cost) = chain(samples, &knots(samples, &prices, tolerance), &prices, tolerance);
+    if pieces.len() < 2 {
+        return pieces;
+    }
+    let joints: Vec<usize> = pieces.iter().map(|p| p.from).chain([samples.len() - 1]).collect();
+    let (calmer, less) = chain(samples, &joints, &prices.with_tremor(), tolerance);
+    if less < cost { calmer } else { pieces }
+}
+
+/// The cheapest chain of pieces that meet at knots, and its cost.
+fn chain(samples: &Samples, knots: &[usize], prices: &Prices, tolerance: Tolerance) -> (Vec<Piece>, f64) {
     let mut cost = vec![f64::INFINITY; knots.len()];
     let mut best: Vec<Option<(usize, Kind)>> = vec![None; knots.len()];
     cost[0] = 0.0;
@@ -49,7 +65,7 @@ pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
         let mut misses = 0;
         for j in i + 1..knots.len() {
             let worth = cost[j] - cost[i];
-            let (price, kind) = cheapest(samples, knots[i], knots[j], tolerance, deviation, worth);
+            let (price, kind) = cheapest(samples, knots[i], knots[j], prices, tolerance, worth);
             if cost[i] + price < cost[j] {
                 cost[j] = cost[i] + price;
                 best[j] = Some((i, kind));
@@ -67,25 +83,48 @@ pub(super) fn segment(samples: &Samples, tolerance: Tolerance) -> Vec<Piece> {
         j = i;
     }
     pieces.reverse();
-    pieces
+    (pieces, cost[knots.len() - 1])
 }
 
-/// Indices of samples at which pieces may meet: about a line width apart.
-fn knots(samples: &Samples, tolerance: Tolerance) -> Vec<usize> {
+/// Indices of samples at which pieces may meet: about a line width apart, or further on a long section. There, where no
+/// piece fits between two, they are as near as on a short one.
+fn knots(samples: &Samples, prices: &Prices, tolerance: Tolerance) -> Vec<usize> {
+    let finest = (0.8 * tolerance.width).max(1.5);
     let length = samples.length();
-    let spacing = (0.8 * tolerance.width).max(1.5).max(length / MOST_KNOTS);
-    let count = (length / spacing).round().max(1.0) as usize;
+    let count = (length / finest.max(length / MOST_KNOTS)).round().max(1.0) as usize;
     let last = samples.len() - 1;
-    let mut knots = vec![0];
+    let mut coarse = vec![0];
     for k in 1..count {
         let at = length * k as f64 / count as f64;
         let index = samples.arc.partition_point(|&a| a < at);
-        if index > knots[knots.len() - 1] && index < last {
-            knots.push(index);
+        if index > coarse[coarse.len() - 1] && index < last {
+            coarse.push(index);
         }
     }
-    knots.push(last);
+    coarse.push(last);
+    let mut knots = vec![0];
+    coarse.windows(2).for_each(|w| halve(samples, [w[0], w[1]], prices, tolerance, finest, &mut knots));
     knots
+}
+
+/// Adds the end of an interval to the knots, and before it those of its halves if no piece fits it.
+fn halve(
+    samples: &Samples,
+    [from, to]: [usize; 2],
+    prices: &Prices,
+    tolerance: Tolerance,
+    finest: f64,
+    knots: &mut Vec<usize>,
+) {
+    let (start, end) = (samples.arc[from], samples.arc[to]);
+    let middle = samples.arc.partition_point(|&a| a < 0.5 * (start + end));
+    let can = end - start > 2.0 * finest && from < middle && middle < to;
+    if can && cheapest(samples, from, to, prices, tolerance, f64::INFINITY).0 > HOPELESS {
+        halve(samples, [from, middle], prices, tolerance, finest, knots);
+        halve(samples, [middle, to], prices, tolerance, finest, knots);
+    } else {
+        knots.push(to);
+    }
 }
 
 /// The cheapest single piece over samples `from..=to`. Fitting a cubic takes by far the longest: it is not tried
@@ -94,29 +133,25 @@ fn cheapest(
     samples: &Samples,
     from: usize,
     to: usize,
+    prices: &Prices,
     tolerance: Tolerance,
-    deviation: f64,
     worth: f64,
 ) -> (f64, Kind) {
-    // Neighbouring points share ink: about one in a line width is independent.
-    let independent = (samples.length() / samples.len() as f64 / tolerance.width).min(1.0);
-    let price = |base: f64, error: f64| base + error * independent / (deviation * deviation);
+    let weight = samples.moments(from, to).w;
+    let price =
+        |prices: &Prices, error: f64, offsets: &dyn Fn() -> Vec<Offset>| prices.of(Misfit { error, weight }, offsets);
     let fitted = fit_line(samples, from, to);
-    let mut line = price(LINE, fitted.error);
-    if line > ARC
-        && let Some(error) = fitted.error_beside_stairs(samples, from, to, tolerance)
-    {
-        line = line.min(price(LINE, error));
-    }
+    let line = LINE + price(&prices.of_lines(), fitted.error, &|| samples.offsets(from, to, |p| fitted.offset(p)));
     let mut cheapest = (line, Kind::Line);
     if line <= ARC {
         return cheapest;
     }
-    if let Some(circle) = fit_circle(samples, from, to) {
-        let length = samples.arc[to] - samples.arc[from];
-        let sweep = length / circle.radius;
-        let arc = price(ARC, circle.error);
-        if arc < cheapest.0 && sweep < 5.5 && circle.radius > 0.3 * tolerance.width {
+    if let Some(circle) = fit_circle(samples, from, to)
+        && circle.radius > 0.3 * tolerance.width
+        && samples.arc[to] - samples.arc[from] < MOST_SWEEP * circle.radius
+    {
+        let arc = ARC + price(prices, circle.error, &|| samples.offsets(from, to, |p| circle.offset(p)));
+        if arc < cheapest.0 {
             cheapest = (arc, Kind::Arc);
         }
     }
@@ -125,13 +160,14 @@ fn cheapest(
     }
     let ends = Ends { start: near(samples, from), end: near(samples, to), start_tangent: None, end_tangent: None };
     let fitted = fit_cubic(samples, from, to, &ends, 2);
-    let cubic = price(CUBIC, fitted.error);
+    let of_error = |error: f64| CUBIC + price(prices, error, &|| fitted.offsets(samples, from, to));
+    let cubic = of_error(fitted.error);
     if cubic >= cheapest.0 {
         return cheapest;
     }
     // What repeats along a line must not make it a curve.
     let closely = line < cubic + DOUBTFUL;
-    let cubic = if closely { cubic.max(price(CUBIC, fitted.closer_error(samples, from, to))) } else { cubic };
+    let cubic = if closely { cubic.max(of_error(fitted.closer_error(samples, from, to))) } else { cubic };
     if cubic < cheapest.0 { (cubic, Kind::Cubic) } else { cheapest }
 }
 

@@ -1,7 +1,7 @@
 //! Outlines of solid regions.
 
 use super::Tolerance;
-use super::joints::join;
+use super::chain::join;
 use super::samples::Samples;
 use super::segmentation::segment;
 use crate::drawing::Fill;

@@ -2,10 +2,10 @@
 
 use super::Tolerance;
 use super::arc::fit_circle;
-use super::joints::join;
+use super::chain::join;
 use super::rectangle;
 use super::samples::Samples;
-use super::segmentation::{Kind, Piece, segment};
+use super::segmentation::{Kind, segment};
 use crate::drawing::{Centreline, Segment};
 use crate::graph::TrailPoint;
 use kurbo::{Circle, Line, Point, Vec2};
@@ -189,7 +189,7 @@ fn smooth_loop(walk: &[TrailPoint], tolerance: Tolerance) -> Centreline {
     }
     // A first pass finds a joint to start from, before a line if there is one: a cut through the middle of a piece
     // would split it.
-    let pieces: Vec<Piece> = segment(&samples, tolerance);
+    let pieces = segment(&samples, tolerance);
     let after = pieces.iter().skip(1).max_by_key(|p| (p.kind == Kind::Line, p.to - p.from));
     let start = after.map_or(0, |p| p.from);
     let samples = around(start.min(walk.len() - 1));
@@ -221,7 +221,8 @@ mod tests {
     #[test]
     fn a_node_beside_two_lines_bends_neither() {
         for aside in [3.0, 5.0, 8.0] {
-            let point = |x: f64, y: f64, corner: bool| TrailPoint { point: Point::new(x, y), width: 3.0, corner };
+            let point =
+                |x: f64, y: f64, corner: bool| TrailPoint { point: Point::new(x, y), width: 3.0, noise: 0.0, corner };
             let mut walk: Vec<TrailPoint> = (0..80).map(|k| point(0.5 * f64::from(k), 0.0, false)).collect();
             walk.push(point(42.0, aside, true));
             walk.extend((0..100).map(|k| point(52.0, 10.0 + 0.5 * f64::from(k), false)));

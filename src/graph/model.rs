@@ -174,7 +174,7 @@ impl StrokeGraph {
             let (Some(e), Some((a, b))) = (self.graph.edge_weight(edge), self.graph.edge_endpoints(edge)) else {
                 continue;
             };
-            let point = |(&point, &width)| TrailPoint { point, width, corner: false };
+            let point = |(&point, &width)| TrailPoint { point, width, noise: e.noise, corner: false };
             let mut piece: Vec<TrailPoint> = e.points.iter().zip(&e.widths).map(point).collect();
             let corner = |node: NodeIndex| matches!(self.graph[node].kind, JunctionKind::Corner | JunctionKind::Branch);
             if let [first, .., last] = piece.as_mut_slice() {
@@ -197,6 +197,8 @@ pub(crate) struct TrailPoint {
     pub point: Point,
     /// Ink width in pixels; NaN where it cannot be measured.
     pub width: f64,
+    /// Standard deviation of the ink's edge about a smooth line, in pixels.
+    pub noise: f64,
     /// Whether the line may turn sharply here.
     pub corner: bool,
 }
