@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::field::{Pixel, PolyVectorField, is_defined};
 use crate::raster::{Mask, Raster, runs};
 use crate::unet::engine::{Engine, Scratch, TileCells};
-use crate::unet::{Backend, Extractor, Shown, UNetConfig, Weights};
+use crate::unet::{Backend, Extractor, Output, Shown, UNetConfig, Weights};
 #[cfg(feature = "train")]
 use crate::unet::{Features, Within, features};
 #[cfg(feature = "train")]
@@ -65,9 +65,12 @@ impl UNet {
     /// The network of some weights.
     ///
     /// # Errors
-    /// [`crate::Error::Weights`] when the weights are not all there.
+    /// [`crate::Error::Weights`] when the weights are not all there, or those of a network that sees something else.
     pub fn new(weights: &Weights, backend: Backend) -> Result<Self> {
         let config = weights.config();
+        if config.output != Output::Field {
+            return Err(weights.failed("holds no field network"));
+        }
         let runner = match backend {
             Backend::Engine => Runner::Engine(Box::new([Engine::new(weights)?, Engine::new(&weights.mirrored()?)?])),
             #[cfg(feature = "train")]
@@ -247,7 +250,7 @@ impl<'a> Tile<'a> {
         values.clear();
         engines[0].run(scratch, input, &self.cells, |_, _, first| values.push(first));
         let (mut pixels, mut first) = (Vec::new(), values.iter());
-        engines[1].run(scratch, input, &self.cells, |x, y, second| {
+        engines[1].run(scratch, input, &self.cells, |x, y, second: [f32; 4]| {
             let first = first.next().expect("the same pixels in the same order");
             if let Some(index) = self.number(x, y) {
                 let base = features.base(y * self.size.0 + x).unwrap_or_default();

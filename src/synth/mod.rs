@@ -1,11 +1,13 @@
-//! Seeded line drawings and scans of them: every epoch of training sees new ones.
+//! Seeded line drawings, scans of them and pages with them: every epoch of training sees new ones.
 
 mod motifs;
 mod noise;
+mod page;
 mod placed;
 mod scan;
 mod shapes;
 
+pub use page::{Kind, Page, page};
 #[cfg(test)]
 pub(crate) use placed::mapped;
 pub use placed::placed;

@@ -1,7 +1,9 @@
 //! What a training run is told, and where its data comes from.
 
+use super::source::{Skipped, Source};
 use crate::error::{Error, Result};
-use crate::unet::UNetConfig;
+use crate::synth::Kind;
+use crate::unet::{Output, UNetConfig};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -27,7 +29,11 @@ pub struct TrainConfig {
     pub angle: f64,
     /// Weight of the smoothness of the prediction, the paper's gamma.
     pub gamma: f64,
-    /// Share of the data that is scans; the rest is clean.
+    /// Weight of the soft Dice loss beside the cross-entropy of ink.
+    pub dice: f64,
+    /// Kinds of pages that ink is not trained on, though it is validated on them.
+    pub held_out: Vec<Kind>,
+    /// Share of the data of a field that is scans; the rest is clean.
     pub scans: f64,
     /// Side of the synthetic drawings that crops are cut from, in pixels.
     pub sheet: usize,
@@ -47,8 +53,8 @@ pub struct TrainConfig {
     pub svg_share: f64,
     /// Steps between validations.
     pub validate_every: usize,
-    /// Drawings to validate on, each as clean and, where scans are trained on, as scan; 0 validates on the training
-    /// set of `images`.
+    /// Drawings to validate on, each as clean and, where scans are trained on, as scan, or pages of each kind; 0 validates
+    /// on the training set of `images`.
     pub validation_sheets: usize,
     /// Seconds between checkpoints.
     pub checkpoint_seconds: u64,
@@ -70,6 +76,8 @@ impl Default for TrainConfig {
             alignment: 1.0,
             angle: 1.0,
             gamma: 1e-3,
+            dice: 0.2,
+            held_out: Vec::new(),
             scans: 0.65,
             sheet: 144,
             crops_a_sheet: 4,
@@ -117,8 +125,12 @@ impl TrainConfig {
     pub fn validate(&self) -> Result<()> {
         let fail = |reason: String| Err(Error::Train { reason });
         let multiple = self.network.multiple();
-        if self.network.width == 0 || !(1..=2).contains(&self.network.patch) {
-            return fail("network.width is at least 1 and network.patch 1 or 2".into());
+        if !self.network.is_sound() {
+            let shape = "network.width is at least 1 and network.patch 1 or 2";
+            return fail(format!("{shape}; input \"color\" and output \"ink\" go together"));
+        }
+        if self.network.output == Output::Ink && (self.images > 0 || self.turns || self.primitives > 0) {
+            return fail("images, turns and primitives are not for ink".into());
         }
         if self.crop == 0 || !self.crop.is_multiple_of(multiple) {
             return fail(format!("crop is {} and has to be a multiple of {multiple}", self.crop));
@@ -142,6 +154,14 @@ impl TrainConfig {
             return fail("scans is between 0 and 1, and rate is positive".into());
         }
         Ok(())
+    }
+
+    /// The drawings that are drawn from, and the SVGs that were left out.
+    ///
+    /// # Errors
+    /// As [`Source::with_svgs`].
+    pub fn source(&self) -> Result<(Source, Vec<Skipped>)> {
+        self.svgs.as_deref().map_or_else(|| Ok((Source::synthetic(), Vec::new())), Source::with_svgs)
     }
 
     /// Whether some of the data are scans.

@@ -15,10 +15,17 @@ const MARGIN: f64 = 56.0;
 const COLORS: [&str; 4] = ["#0072b2", "#56b4e9", "#d55e00", "#e69f00"];
 
 /// Which columns of the metrics a panel shows, both axes of numbers: steps across, logarithmic upwards.
-const PANELS: [(&str, &[&str]); 2] = [
+const PANELS: [Panel; 2] = [
     ("loss", &["loss", "alignment", "clean_mse", "scan_mse"]),
     ("degrees", &["clean_ink_deg", "clean_junction_deg", "scan_ink_deg", "scan_junction_deg"]),
 ];
+/// The same where ink is trained.
+const INK_PANELS: [Panel; 2] = [
+    ("loss", &["loss", "entropy", "dice"]),
+    ("error of coverage", &["clean_mae", "photo_mae", "copy_mae", "pencil_mae"]),
+];
+
+type Panel = (&'static str, &'static [&'static str]);
 
 /// Draws the metrics of a run, a CSV with a header, to an SVG.
 ///
@@ -29,10 +36,11 @@ pub fn draw(metrics: &Path, out: &Path) -> Result<()> {
     let text = fs::read_to_string(metrics).map_err(read)?;
     let table = Table::new(&text);
     let (width, height) = (PANEL.0 + 2.0 * MARGIN, PANEL.1 + 2.0 * MARGIN);
-    let count = PANELS.len() as f64;
+    let panels = if table.names.contains(&"entropy") { INK_PANELS } else { PANELS };
+    let count = panels.len() as f64;
     let paper = Rectangle::new().set("width", "100%").set("height", "100%").set("fill", "white");
     let mut document = Document::new().set("viewBox", (0.0, 0.0, count * width, height)).add(paper);
-    for (i, (title, columns)) in PANELS.into_iter().enumerate() {
+    for (i, (title, columns)) in panels.into_iter().enumerate() {
         document = panel(document, i as f64 * width + MARGIN, title, &table, columns);
     }
     write_file(out, document.to_string().as_bytes())

@@ -1,11 +1,12 @@
 //! Batches, made while the network trains on the ones before.
 
 use super::config::TrainConfig;
+use super::ink;
 use super::source::{Sight, Source, sight};
 use super::turn::Turn;
 use crate::ground_truth::{FieldTruth, Place};
 use crate::raster::Raster;
-use crate::unet::{Features, Input, features};
+use crate::unet::{Features, Input, Output, features};
 use num_complex::Complex32;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
@@ -25,7 +26,8 @@ const SHARED: f32 = 6.0;
 /// How much the second direction counts where nothing shows it.
 const UNSEEN: f32 = 0.2;
 
-/// An image with its truth, or a crop of one.
+/// An image with its truth, or a crop of one. Where ink is trained, `target` is its coverage, `[1, height, width]`, and
+/// what follows the input is otherwise empty.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
     /// Network input, `[channels, height, width]`.
@@ -79,7 +81,7 @@ impl Sample {
     }
 
     /// The square `[x, x + crop) x [y, y + crop)` of a sample of a size.
-    fn cropped(&self, (width, height): (usize, usize), x: usize, y: usize, crop: usize) -> Self {
+    pub(super) fn cropped(&self, (width, height): (usize, usize), x: usize, y: usize, crop: usize) -> Self {
         let mut out = Self::default();
         for (from, to) in self.planes().into_iter().zip(out.planes_mut()) {
             for plane in from.chunks_exact(width * height) {
@@ -122,6 +124,9 @@ pub(super) fn sheet(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig)
 /// The crops of one drawing. The same seed and number give the same crops.
 fn crops(config: &TrainConfig, source: &Source, number: u64) -> Vec<Sample> {
     let mut rng = stream(config.seed, number);
+    if config.network.output == Output::Ink {
+        return ink::crops(&mut rng, source, config);
+    }
     let Sight { ink, truth } = sheet(&mut rng, source, config);
     let whole = Sample::new(&ink, &truth, config.network.input);
     let (width, height) = ink.size();

@@ -2,12 +2,11 @@
 
 use super::checkpoint::{self, State};
 use super::config::TrainConfig;
-use super::data::batches;
-use super::loss::{Batch, Loss};
+use super::data::{Sample, batches};
 use super::source::{Skipped, Source};
-use super::validate::{Validation, Validator};
+use super::subject::{Cost, Judge, Verdict};
 use crate::error::{Error, Result};
-use crate::unet::{UNet, Weights, save};
+use crate::unet::{Output, UNet, Weights, save};
 use crate::write::write_file;
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
@@ -25,12 +24,13 @@ pub struct Progress {
     pub step: usize,
     /// Steps in all.
     pub steps: usize,
-    /// Mean of the loss and of its parts (total, alignment, angle in radians, smoothness) since the last validation.
+    /// Mean of the loss and of its parts since the last validation: total, alignment, angle in degrees and smoothness; for
+    /// ink total, cross-entropy, Dice loss, and how much ink is seen of 1 that is there.
     pub loss: [f64; 4],
     /// Seconds of training so far, over all resumed parts.
     pub seconds: f64,
     /// The validation after this step, where there was one.
-    pub validation: Option<Validation>,
+    pub validation: Option<Verdict>,
 }
 
 /// A run: a network with its optimiser at some step, and the directory that it is kept in.
@@ -38,7 +38,7 @@ pub struct Trainer {
     config: TrainConfig,
     source: Arc<Source>,
     skipped: Vec<Skipped>,
-    validator: Validator,
+    judge: Judge,
     dir: PathBuf,
     device: Device,
     model: UNet,
@@ -72,13 +72,10 @@ impl Trainer {
         if *start != Start::Resume && checkpoint::exists(dir) {
             return fail(format!("{}: holds a run already; resume it or name another folder", dir.display()));
         }
-        let (source, skipped) = match &config.svgs {
-            Some(folder) => Source::with_svgs(folder)?,
-            None => (Source::synthetic(), Vec::new()),
-        };
+        let (source, skipped) = config.source()?;
         let device = device.clone().autodiff();
         let mut run = Self {
-            validator: Validator::new(&config, &source),
+            judge: Judge::new(&config, &source),
             source: Arc::new(source),
             skipped,
             dir: dir.into(),
@@ -100,7 +97,10 @@ impl Trainer {
                 return Ok(Self { state, model, optimizer: moments, ..run });
             }
             Start::Fresh => None,
-            Start::BuiltIn => Some(Weights::built_in()?),
+            Start::BuiltIn => Some(match run.config.network.output {
+                Output::Field => Weights::built_in()?,
+                Output::Ink => Weights::built_in_ink()?,
+            }),
             Start::From(path) => Some(Weights::read(path)?),
         };
         fs::create_dir_all(dir).map_err(|cause| Error::Write { path: dir.into(), cause })?;
@@ -149,11 +149,10 @@ impl Trainer {
         while self.state.step < self.config.steps {
             let begin = Instant::now();
             let sample = feed.recv().map_err(|_| Error::Train { reason: "the data generator stopped".into() })?;
-            let batch = Batch::new(sample, self.config.batch, self.config.crop, &self.device);
-            self.optimise(&batch)?;
+            self.optimise(sample)?;
             let done = self.state.step;
             let due = done.is_multiple_of(self.config.validate_every) || done == self.config.steps;
-            let validation = due.then(|| self.validator.run(&self.model.valid(), &plain));
+            let validation = due.then(|| self.judge.run(&self.model.valid(), &plain));
             self.state.seconds += begin.elapsed().as_secs_f64();
             let report = self.report(validation);
             if let Some(validation) = validation {
@@ -173,10 +172,8 @@ impl Trainer {
     }
 
     /// One step of Adam.
-    fn optimise(&mut self, batch: &Batch) -> Result<()> {
-        let loss = Loss::new(self.model.forward(batch.input.clone()), batch);
-        let total = loss.total(&self.config);
-        let parts = [total.clone(), loss.alignment, loss.angle, loss.smoothness].map(|t| t.into_scalar::<f64>());
+    fn optimise(&mut self, sample: Sample) -> Result<()> {
+        let Cost { total, parts } = Cost::new(&self.model, sample, &self.config, &self.device);
         if !parts[0].is_finite() {
             let reason = format!("the loss at step {} is not a number; try a lower rate", self.state.step);
             return Err(Error::Train { reason });
@@ -191,7 +188,7 @@ impl Trainer {
         Ok(())
     }
 
-    fn report(&self, validation: Option<Validation>) -> Progress {
+    fn report(&self, validation: Option<Verdict>) -> Progress {
         let (sums, n) = self.state.sums;
         Progress {
             step: self.state.step,
@@ -207,7 +204,7 @@ impl Trainer {
     }
 
     /// Writes a line of metrics, and the weights if they are the best so far; `last.safetensors` is always written.
-    fn keep(&mut self, report: &Progress, validation: &Validation) -> Result<()> {
+    fn keep(&mut self, report: &Progress, validation: &Verdict) -> Result<()> {
         self.state.sums = Default::default();
         let model = self.model.valid();
         save(&self.dir.join("last.safetensors"), &self.config.network, &model)?;
@@ -217,10 +214,11 @@ impl Trainer {
             self.state.stale = 0;
             save(&self.dir.join("best.safetensors"), &self.config.network, &model)?;
             let device = self.device.clone().inner();
-            self.validator.draw_examples(&model, &device, &self.dir.join("examples.png"))?;
+            self.judge.draw_examples(&model, &device, &self.dir.join("examples.png"))?;
         }
         let path = self.dir.join(METRICS);
-        append_metrics(&path, report, validation).map_err(|cause| Error::Write { path: path.clone(), cause })?;
+        let names = Cost::names(self.config.network.output);
+        append_metrics(&path, names, report, validation).map_err(|cause| Error::Write { path: path.clone(), cause })?;
         super::curves::draw(&path, &self.dir.join("curves.svg"))
     }
 }
@@ -236,21 +234,17 @@ fn forget_after(path: &Path, step: usize) -> Result<()> {
     write_file(path, kept.as_bytes())
 }
 
-const ERRORS: [&str; 5] = ["ink_deg", "junction_deg", "mse", "smoothness", "ink_share"];
-
-fn append_metrics(path: &Path, report: &Progress, validation: &Validation) -> std::io::Result<()> {
+/// Adds a line to the metrics, with names above the first.
+fn append_metrics(path: &Path, names: [&str; 4], report: &Progress, validation: &Verdict) -> std::io::Result<()> {
     let fresh = !path.exists();
-    let kinds = [("clean", Some(validation.clean)), ("scan", validation.scan)];
-    let kinds = || kinds.into_iter().filter_map(|(name, errors)| Some((name, errors?)));
+    let figures = validation.figures();
     let mut file = OpenOptions::new().create(true).append(true).open(path)?;
     if fresh {
-        let names: String = kinds().flat_map(|(kind, _)| ERRORS.map(|e| format!(",{kind}_{e}"))).collect();
-        writeln!(file, "step,seconds,loss,alignment,angle_deg,smoothness{names}")?;
+        let of_validation = figures.iter().map(|(name, _)| name.as_str());
+        let names: String = names.into_iter().chain(of_validation).flat_map(|name| [",", name]).collect();
+        writeln!(file, "step,seconds{names}")?;
     }
-    let [loss, alignment, angle, smoothness] = report.loss;
-    let angle = angle.to_degrees();
-    let of_kinds = kinds().flat_map(|(_, e)| [e.ink, e.junction, e.mse, e.smoothness, e.ink_share]);
-    let figures: String =
-        [loss, alignment, angle, smoothness].into_iter().chain(of_kinds).map(|v| format!(",{v:.4e}")).collect();
-    writeln!(file, "{},{:.0}{figures}", report.step, report.seconds)
+    let values = report.loss.into_iter().chain(figures.iter().map(|(_, value)| *value));
+    let values: String = values.map(|v| format!(",{v:.4e}")).collect();
+    writeln!(file, "{},{:.0}{values}", report.step, report.seconds)
 }

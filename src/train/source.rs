@@ -65,7 +65,7 @@ impl Source {
     }
 
     /// A sheet of some drawing.
-    fn drawing(&self, rng: &mut impl Rng, config: &TrainConfig) -> Drawing {
+    pub(super) fn drawing(&self, rng: &mut impl Rng, config: &TrainConfig) -> Drawing {
         if config.primitives > 0 {
             return synth::primitives(rng, config.sheet, config.primitives);
         }

@@ -34,6 +34,14 @@ pub struct FieldError {
     pub ink_share: f64,
 }
 
+impl FieldError {
+    pub(super) fn figures(&self) -> [(&'static str, f64); 5] {
+        let Self { ink, junction, mse, smoothness, ink_share } = *self;
+        let degrees = [("ink_deg", ink), ("junction_deg", junction)];
+        [degrees[0], degrees[1], ("mse", mse), ("smoothness", smoothness), ("ink_share", ink_share)]
+    }
+}
+
 /// Errors on clean drawings and, where a run has them, on scans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
@@ -44,7 +52,7 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// One number to keep the best network by: errors relative to what they have to reach.
+    /// One number to keep the best network by, the smaller the better: errors relative to what they have to reach.
     pub fn score(&self) -> f64 {
         let part = |e: &FieldError, ink: f64, junction: f64| e.ink / ink + e.junction / junction;
         part(&self.clean, 0.5, 3.0) + self.scan.map_or(0.0, |scan| part(&scan, 0.8, 4.5))

@@ -17,6 +17,8 @@ pub enum Input {
     /// tensor's own field, so that it starts where a structure tensor ends.
     #[default]
     Tensor,
+    /// The page as it came in, red, green and blue less a half; see [`crate::unet::InkNet`].
+    Color,
 }
 
 impl Input {
@@ -25,6 +27,7 @@ impl Input {
         match self {
             Self::Ink => 1,
             Self::Tensor => 9,
+            Self::Color => 3,
         }
     }
 }
@@ -97,7 +100,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// The network's input for an image of ink, 0 to 1.
+/// The input of a field network for an image of ink, 0 to 1. [`Input::Color`] is not made from ink.
 ///
 /// In a window with the moments `m0`, `m2`, `m4` of the squared tangents (see [`crate::estimate::StructureTensor`]),
 /// the channels are the ink, then `m2 / (m0 + floor)` and `m4 / (m0 + floor)` of each scale; the field that is
@@ -135,7 +138,7 @@ impl Extractor {
         self.pixels = n;
         self.channels.resize(input.channels() * n, 0.0);
         self.channels[..n].copy_from_slice(ink.data());
-        if input == Input::Ink {
+        if input != Input::Tensor {
             return;
         }
         let (_, moments) = self.channels.split_at_mut(n);

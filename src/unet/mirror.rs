@@ -92,7 +92,7 @@ mod tests {
     fn output(weights: &Weights, input: &[f32], cells: usize, side: usize) -> Vec<f32> {
         let cells = TileCells::new(cells, cells, vec![true; cells * cells]);
         let mut out = vec![0.0; 4 * side * side];
-        Engine::new(weights).unwrap().run(&mut Scratch::default(), input, &cells, |x, y, values| {
+        Engine::new(weights).unwrap().run(&mut Scratch::default(), input, &cells, |x, y, values: [f32; 4]| {
             values.into_iter().enumerate().for_each(|(k, value)| out[(k * side + y) * side + x] = value);
         });
         out

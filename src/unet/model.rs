@@ -18,7 +18,7 @@ impl UNetConfig {
         let down = self.down().into_iter().map(|channels| Block::new(self, channels, device, &mut rng)).collect();
         let joined = |[low, skip, output]: [usize; 3]| [low + skip, output];
         let up = self.up().into_iter().map(|all| Block::new(self, joined(all), device, &mut rng)).collect();
-        let head = Conv2dConfig::new([self.width, 4 * self.cells()], [1, 1]).with_initializer(Initializer::Zeros);
+        let head = Conv2dConfig::new([self.channels(0), self.outputs()], [1, 1]).with_initializer(Initializer::Zeros);
         let head = filled(head.init(device), device, &mut rng);
         UNet { down, up, head, patch: self.patch }
     }
@@ -70,14 +70,15 @@ pub struct UNet {
     pub down: Vec<Block>,
     /// Decoder blocks, lowest resolution first.
     pub up: Vec<Block>,
-    /// From features to coefficients, 1x1.
+    /// From features to what is said of each pixel, 1x1.
     pub head: Conv2d,
     patch: usize,
 }
 
 impl UNet {
-    /// From `[batch, channels, height, width]` to `[batch, 4, height, width]`: `Re c0`, `Im c0`, `Re c2`, `Im c2`, less
-    /// the field that [`super::Features`] starts from. Sides are multiples of [`UNetConfig::multiple`].
+    /// From `[batch, channels, height, width]` to `[batch, outputs, height, width]`: `Re c0`, `Im c0`, `Re c2`, `Im c2`,
+    /// less the field that [`super::Features`] starts from, or the log-odds of ink. Sides are multiples of
+    /// [`UNetConfig::multiple`].
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
         self.forward_seen(x, &mut |x| x)
     }
@@ -190,5 +191,9 @@ mod tests {
             let x = Tensor::random([2, input.channels(), side, 2 * side], Distribution::Default, &device);
             assert_eq!(config.init(&device, 1).forward(x).dims(), [2, 4, side, 2 * side]);
         }
+        let x = Tensor::random([1, 3, 32, 64], Distribution::Default, &device);
+        let net = UNetConfig::ink().init(&device, 1);
+        assert_eq!(net.forward(x).dims(), [1, 1, 32, 64]);
+        assert!((200_000..260_000).contains(&net.num_params()), "{}", net.num_params());
     }
 }

@@ -32,10 +32,18 @@ impl Weights {
         Self::new("the built-in weights".into(), Cow::Borrowed(include_bytes!("weights/field.safetensors")))
     }
 
+    /// The weights of the network that finds ink, which the program carries too.
+    ///
+    /// # Errors
+    /// [`Error::Weights`] never, unless the program was built around a broken file.
+    pub fn built_in_ink() -> Result<Self> {
+        Self::new("the built-in ink weights".into(), Cow::Borrowed(include_bytes!("weights/ink.safetensors")))
+    }
+
     /// The weights in a file that `trace train` wrote.
     ///
     /// # Errors
-    /// [`Error::Read`] when the file cannot be read, [`Error::Weights`] when it does not hold a field network.
+    /// [`Error::Read`] when the file cannot be read, [`Error::Weights`] when it does not hold a network.
     pub fn read(path: &Path) -> Result<Self> {
         let name = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|cause| Error::Read { input: name.clone(), cause })?;
@@ -47,7 +55,7 @@ impl Weights {
         let (_, header) =
             SafeTensors::read_metadata(&bytes).map_err(|e| fail(format!("not a safetensors file: {e}")))?;
         let shape = header.metadata().as_ref().and_then(|all| all.get(CONFIG));
-        let shape = shape.ok_or_else(|| fail("holds no field network".into()))?;
+        let shape = shape.ok_or_else(|| fail("holds no network".into()))?;
         let config: UNetConfig = serde_json::from_str(shape).map_err(|e| fail(e.to_string()))?;
         if !config.is_sound() {
             return Err(fail(format!("there is no network of such a shape: {shape}")));
@@ -77,7 +85,7 @@ impl Weights {
     }
 
     /// The error for something wrong with the file.
-    pub(super) fn failed(&self, cause: impl std::fmt::Display) -> Error {
+    pub(crate) fn failed(&self, cause: impl std::fmt::Display) -> Error {
         Error::Weights { input: self.name.clone(), reason: cause.to_string() }
     }
 }
@@ -127,7 +135,7 @@ mod tests {
             assert!(error.contains("some.safetensors") && error.contains(reason), "{error}");
         };
         refused(b"nothing", "not a safetensors file");
-        refused(&[&2u64.to_le_bytes()[..], b"{}"].concat(), "no field network");
+        refused(&[&2u64.to_le_bytes()[..], b"{}"].concat(), "no network");
         let with = |shape: &str| {
             let shape = shape.replace('"', "\\\"");
             let header = format!("{{\"__metadata__\":{{\"{CONFIG}\":\"{shape}\"}}}}");

@@ -1,11 +1,11 @@
-//! `trace train CONFIG -o DIR`: trains the field network.
+//! `trace train CONFIG -o DIR`: trains the field network or the one that sees ink.
 
 use crate::args::TrainArgs;
 use crate::failure::Failure;
 use crate::interrupt;
 use fieldtrace::Error;
 use fieldtrace::cancel::Cancel;
-use fieldtrace::train::{Progress, Start, TrainConfig, Trainer};
+use fieldtrace::train::{InkValidator, Progress, Start, TrainConfig, Trainer};
 use fieldtrace::unet::Backend;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -16,6 +16,9 @@ pub(crate) fn run(args: &TrainArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of(&args.output.display().to_string(), &e);
     let device = Backend::named(&args.device.device).map_err(failed)?.to_train();
     let config = config(args).map_err(failed)?;
+    if args.show {
+        return show_pages(&config, &args.output).map_err(failed);
+    }
     let start = match (&args.from, args.resume) {
         (_, true) => Start::Resume,
         (None, false) => Start::Fresh,
@@ -69,6 +72,13 @@ fn config(args: &TrainArgs) -> fieldtrace::Result<TrainConfig> {
     Ok(config)
 }
 
+/// Draws what ink is validated on to a file in a folder.
+fn show_pages(config: &TrainConfig, folder: &Path) -> fieldtrace::Result<()> {
+    let path = folder.join("pages.png");
+    std::fs::create_dir_all(folder).map_err(|cause| Error::Write { path: path.clone(), cause })?;
+    InkValidator::new(config, &config.source()?.0).draw_pages(&path)
+}
+
 fn introduce(trainer: &Trainer) {
     for (path, reason) in trainer.skipped() {
         eprintln!("trace: {}: left out: {reason}", path.display());
@@ -92,16 +102,12 @@ fn bar(trainer: &Trainer, quiet: bool) -> ProgressBar {
 
 fn show(bar: &ProgressBar, progress: &Progress, quiet: bool) {
     bar.set_position(progress.step as u64);
-    let [loss, _, angle, _] = progress.loss;
-    bar.set_message(format!("loss {loss:.4}, angle {:.2} deg", angle.to_degrees()));
+    let loss = progress.loss[0];
+    bar.set_message(format!("loss {loss:.4}"));
     let Some(validation) = &progress.validation else { return };
     if quiet {
         return;
     }
-    let scan = validation.scan.map_or_else(String::new, |e| format!("; scan {:.2}, {:.2}", e.ink, e.junction));
-    let line = format!(
-        "step {}, {:.0} s: loss {loss:.4}; clean {:.2} deg on ink, {:.2} near junctions{scan}",
-        progress.step, progress.seconds, validation.clean.ink, validation.clean.junction
-    );
+    let line = format!("step {}, {:.0} s: loss {loss:.4}; {validation}", progress.step, progress.seconds);
     if bar.is_hidden() { eprintln!("{line}") } else { bar.println(line) }
 }

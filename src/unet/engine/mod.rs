@@ -56,10 +56,10 @@ impl Engine {
             source.extend(stored(skip).into_iter().map(|i| i.map(|i| low + i)));
             up.push(block(&numbers, &format!("up.{i}"), &source, output)?);
         }
-        let outputs = 4 * config.cells();
+        let outputs = config.outputs();
         let bias = numbers.get("head.bias", &[outputs])?;
-        let head = numbers.get("head.weight", &[outputs, config.width, 1, 1])?;
-        let head = Conv::new(1, &head, &bias, &stored(config.width), false);
+        let head = numbers.get("head.weight", &[outputs, config.channels(0), 1, 1])?;
+        let head = Conv::new(1, &head, &bias, &stored(config.channels(0)), false);
         let mut engine = Self { config, arch: Arch::new(), down, up, head, blank: Vec::new() };
         engine.blank = engine.blank_values();
         Ok(engine)
@@ -68,14 +68,16 @@ impl Engine {
     /// Computes the active cells of a tile.
     ///
     /// `input` is `[channels, height, width]` and `cells` has one cell for [`UNetConfig::multiple`] pixels each way.
-    /// Calls `put(x, y, [Re c0, Im c0, Re c2, Im c2])` with the output at every pixel of an active cell.
-    pub fn run(
+    /// Calls `put(x, y, values)` with the output at every pixel of an active cell: `[Re c0, Im c0, Re c2, Im c2]`, or the
+    /// log-odds of ink. `N` is the number of [`Output::channels`](super::Output::channels).
+    pub fn run<const N: usize>(
         &self,
         scratch: &mut Scratch,
         input: &[f32],
         cells: &TileCells,
-        mut put: impl FnMut(usize, usize, [f32; 4]),
+        mut put: impl FnMut(usize, usize, [f32; N]),
     ) {
+        debug_assert_eq!(N, self.config.output.channels());
         self.prepare(scratch, cells);
         self.unshuffle(&mut scratch.planes[0], input, cells);
         self.forward(&mut scratch.planes, cells, |_| ());
@@ -84,8 +86,8 @@ impl Engine {
         cells.runs(1 << self.config.levels, |x, y, n| {
             for (i, values) in last.pixels(x, y, n).chunks_exact(last.channels).enumerate() {
                 for (dy, dx) in (0..p).flat_map(|dy| (0..p).map(move |dx| (dy, dx))) {
-                    let at = |k: usize| values[k * p * p + dy * p + dx];
-                    put((x + i) * p + dx, y * p + dy, [at(0), at(1), at(2), at(3)]);
+                    let values = std::array::from_fn(|k| values[k * p * p + dy * p + dx]);
+                    put((x + i) * p + dx, y * p + dy, values);
                 }
             }
         });

@@ -45,8 +45,8 @@ mod against_the_tensor_library {
         Weights::read(&path).unwrap()
     }
 
-    /// The largest difference on computed cells of a random image.
-    fn difference(config: UNetConfig, active: impl Fn(usize) -> bool) -> f32 {
+    /// The largest difference on computed cells of a random image; the network says `N` numbers of a pixel.
+    fn difference<const N: usize>(config: UNetConfig, active: impl Fn(usize) -> bool) -> f32 {
         let (device, weights) = (Device::flex(), weights(&config));
         let (columns, rows, m) = (5, 4, config.multiple());
         let (width, height) = (columns * m, rows * m);
@@ -61,7 +61,7 @@ mod against_the_tensor_library {
         let count = active.iter().filter(|a| **a).count();
         let cells = TileCells::new(columns, rows, active);
         let (mut worst, mut n) = (0.0f32, 0);
-        Engine::new(&weights).unwrap().run(&mut Scratch::default(), &input, &cells, |x, y, values| {
+        Engine::new(&weights).unwrap().run(&mut Scratch::default(), &input, &cells, |x, y, values: [f32; N]| {
             n += 1;
             for (k, v) in values.into_iter().enumerate() {
                 worst = worst.max((v - truth[(k * height + y) * width + x]).abs());
@@ -78,9 +78,18 @@ mod against_the_tensor_library {
         {
             let config = UNetConfig { width, levels, patch, input, ..UNetConfig::default() };
             for (what, active) in [("all", (|_| true) as fn(usize) -> bool), ("some", |i| i % 5 < 3 && i != 6)] {
-                let worst = difference(config, active);
+                let worst = difference::<4>(config, active);
                 assert!(worst < 1e-4, "w{width} d{levels} p{patch}, {what} cells: {worst}");
             }
+        }
+    }
+
+    #[test]
+    fn the_engine_sees_the_same_ink() {
+        for patch in [1, 2] {
+            let config = UNetConfig { width: 6, widest: Some(20), levels: 3, patch, ..UNetConfig::ink() };
+            let worst = difference::<1>(config, |_| true);
+            assert!(worst < 1e-4, "p{patch}: {worst}");
         }
     }
 }

@@ -63,7 +63,7 @@ pub(crate) enum Command {
     Field(FieldArgs),
     /// Compare traces with the strokes that were drawn.
     Eval(EvalArgs),
-    /// Train the network that predicts the field.
+    /// Train the network that predicts the field, or the one that sees ink.
     #[cfg(feature = "train")]
     Train(TrainArgs),
     /// Trace many drawings into a folder; the same as more than one IN
@@ -196,6 +196,9 @@ pub(crate) struct TrainArgs {
     /// Seed of the weights and of all data
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
+    /// Only draw the pages that ink is validated on, each over its truth, to pages.png in the folder
+    #[arg(long)]
+    pub(crate) show: bool,
     #[command(flatten)]
     pub(crate) device: DeviceArgs,
     #[command(flatten)]

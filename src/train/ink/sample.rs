@@ -1,0 +1,40 @@
+//! Pages to train on.
+
+use super::super::config::TrainConfig;
+use super::super::data::Sample;
+use super::super::source::Source;
+use crate::synth::{self, Kind, Page};
+use crate::unet::MIDDLE;
+use rand::Rng;
+use rand_chacha::ChaCha8Rng;
+
+/// A page of a kind.
+pub(super) fn page(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig, kind: Kind) -> Page {
+    let (drawing, other) = (source.drawing(rng, config), source.drawing(rng, config));
+    synth::page(rng, kind, drawing, &other)
+}
+
+/// The crops of one page of a kind that is trained on.
+pub(in super::super) fn crops(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig) -> Vec<Sample> {
+    let kind = Kind::draw(rng, &config.held_out);
+    let page = page(rng, source, config, kind);
+    let whole = Sample::of_page(&page);
+    let (width, height) = page.ink.size();
+    (0..config.crops_a_sheet)
+        .map(|_| {
+            let x = rng.random_range(0..=width - config.crop);
+            let y = rng.random_range(0..=height - config.crop);
+            whole.cropped((width, height), x, y, config.crop)
+        })
+        .collect()
+}
+
+impl Sample {
+    /// A page with its ink.
+    pub fn of_page(page: &Page) -> Self {
+        // Images have 256 steps.
+        let stored = |v: &f32| (v * 255.0).round() / 255.0 - MIDDLE;
+        let input = page.color.iter().flat_map(|plane| plane.data().iter().map(stored)).collect();
+        Self { input, target: page.ink.data().to_vec(), ..Self::default() }
+    }
+}
