@@ -62,6 +62,14 @@ pub enum Error {
         /// Width and height of the image.
         image: (usize, usize),
     },
+    /// A map of ink does not fit the page that it is meant for.
+    #[error("the ink is {} x {} and the page {} x {} pixels", ink.0, ink.1, page.0, page.1)]
+    InkSize {
+        /// Width and height of the map.
+        ink: (usize, usize),
+        /// Width and height of the page.
+        page: (usize, usize),
+    },
     /// An observer left a stage's result so that the next stage cannot use it.
     #[error("an observer broke the result of the {stage} stage: {reason}")]
     Broken {

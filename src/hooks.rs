@@ -6,6 +6,8 @@ use crate::drawing::Drawing;
 use crate::error::Result;
 use crate::field::PolyVectorField;
 use crate::graph::{Line, Ran, StrokeGraph};
+use crate::load::Scan;
+use crate::raster::Raster;
 use crate::streamline::Streamline;
 
 /// Sees each stage's result as it passes and may change it in place; an error stops the trace.
@@ -18,10 +20,16 @@ pub trait Observer {
     fn cancel(&self) -> Cancel {
         Cancel::default()
     }
-    /// After cleaning.
+    /// After the ink of a page has been told from everything else on it, where that was asked of an estimator: the share of
+    /// each pixel that is covered by it, 0 to 1.
     ///
     /// # Errors
     /// Stops the trace; so for the other methods.
+    fn on_ink(&mut self, scan: &Scan, coverage: &mut Raster<f32>) -> Result<()> {
+        Ok(())
+    }
+    /// After cleaning.
+    #[allow(clippy::missing_errors_doc)]
     fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
         Ok(())
     }

@@ -26,6 +26,7 @@
 //! | stage | result | what holds |
 //! |---|---|---|
 //! | [`load`] | [`load::Scan`] | upright, alpha over white, at least one pixel and at most the limit, resolution kept |
+//! | [`ink`] | [`load::Scan`] | blank where there is no ink of the drawing, or as it was where ink needs no telling |
 //! | [`clean`] | [`clean::LineImage`] | dark on light, evenly lit, no specks; anti-aliased edges kept; the line width is known and no region much wider than it is left in the mask, and long even ones are an image of broad lines; on a page in colour, every ink is measured against its own strength |
 //! | [`estimate`] | [`field::PolyVectorField`] | defined on the mask; values that are not finite count as undefined |
 //! | decode | [`field::FrameField`] | unit directions; which root is `u` means nothing from one pixel to the next |
@@ -81,6 +82,7 @@ pub mod graph;
 #[cfg(feature = "train")]
 pub mod ground_truth;
 pub mod hooks;
+pub mod ink;
 pub mod inspect;
 pub mod load;
 pub mod metrics;

@@ -8,14 +8,17 @@ use crate::estimate::FieldEstimator;
 use crate::field::{FrameField, PolyVectorField};
 use crate::graph::{Passes, StrokeGraph, Work};
 use crate::hooks::Observer;
+use crate::ink::InkEstimator;
 use crate::load::Scan;
 use crate::options::Options;
 use crate::raster::Raster;
-use crate::{fit, graph, streamline};
+use crate::{fit, graph, ink, streamline};
+use std::borrow::Cow;
 
 /// Traces scans under one set of options and one estimator.
 pub struct Vectorizer {
     options: Options,
+    ink: Option<Box<dyn InkEstimator>>,
     estimator: Box<dyn FieldEstimator>,
     passes: Passes,
 }
@@ -35,7 +38,13 @@ impl Vectorizer {
     /// [`Error::Option`] when an option is out of its range.
     pub fn with(options: Options, estimator: Box<dyn FieldEstimator>) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, estimator, passes: Passes::default() })
+        Ok(Self { options, ink: None, estimator, passes: Passes::default() })
+    }
+
+    /// The same with a source of ink.
+    #[must_use]
+    pub fn with_ink_estimator(self, ink: impl InkEstimator + 'static) -> Self {
+        Self { ink: Some(Box::new(ink)), ..self }
     }
 
     /// The same with another source of fields.
@@ -80,10 +89,49 @@ impl Vectorizer {
     /// Whatever the estimator or the observer says.
     pub fn graph(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<StrokeGraph> {
         let cancel = observer.cancel();
-        let mut image = clean::clean_until(scan, &self.options, &cancel)?;
+        let image = self.line_image(scan, &mut |scan| self.coverage(scan, &cancel), observer)?;
+        self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)
+    }
+
+    /// Traces a scan of which the caller knows the ink: the share of each pixel that is covered, 0 to 1, at the scan's size.
+    ///
+    /// # Errors
+    /// [`Error::InkSize`] when the map's size is not the scan's; whatever the estimator or the observer says.
+    pub fn trace_with_ink(
+        &self,
+        scan: &Scan,
+        coverage: &Raster<f32>,
+        observer: &mut dyn Observer,
+    ) -> Result<Drawing> {
+        let cancel = observer.cancel();
+        let image = self.line_image(scan, &mut |_| Ok(Some(coverage.clone())), observer)?;
+        let graph = self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)?;
+        self.draw(&graph, observer)
+    }
+
+    /// The ink of a scan where it has to be told by an estimator.
+    fn coverage(&self, scan: &Scan, cancel: &Cancel) -> Result<Option<Raster<f32>>> {
+        self.ink.as_ref().map(|ink| ink.estimate_until(scan, cancel)).transpose()
+    }
+
+    /// The lines of a scan, as the observer left them.
+    fn line_image(
+        &self,
+        scan: &Scan,
+        coverage: &mut dyn FnMut(&Scan) -> Result<Option<Raster<f32>>>,
+        observer: &mut dyn Observer,
+    ) -> Result<LineImage> {
+        let drawn = match coverage(scan)? {
+            None => Cow::Borrowed(scan),
+            Some(mut coverage) => {
+                observer.on_ink(scan, &mut coverage)?;
+                Cow::Owned(ink::drawn(scan, &coverage)?)
+            }
+        };
+        let mut image = clean::clean_until(&drawn, &self.options, &observer.cancel())?;
         observer.on_line_image(&mut image)?;
         image.validate()?;
-        self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)
+        Ok(image)
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected.
@@ -107,9 +155,8 @@ impl Vectorizer {
         observer: &mut dyn Observer,
     ) -> Result<Drawing> {
         same_size(field, &scan.gray)?;
-        let mut image = clean::clean_until(scan, &self.options, &observer.cancel())?;
-        observer.on_line_image(&mut image)?;
-        image.validate()?;
+        let cancel = observer.cancel();
+        let image = self.line_image(scan, &mut |scan| self.coverage(scan, &cancel), observer)?;
         let resized = |image: &LineImage| Ok(field.resized(image.ink.width(), image.ink.height()));
         let graph = self.follow(scan, &image, &resized, observer)?;
         self.draw(&graph, observer)

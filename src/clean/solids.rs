@@ -31,7 +31,7 @@ const BROAD_SHARE: f64 = 0.02;
 /// An elongated region is solid only if it is more than this many times as wide as the other lines.
 const BROADEST: f64 = 5.0;
 /// A region is a knot where lines meet, and no solid, if they leave it over more than this share of its rim.
-const KNOT: f64 = 0.5;
+const KNOT: f64 = 0.33;
 /// Ink beside a solid region that is less than this many squares of the line width is its corner, not a line.
 const CORNER: f64 = 4.0;
 

@@ -54,8 +54,8 @@ pub struct EnergyEstimator {
     /// Weight of the smoothness term on an image without grain, over 0. The term is the same at any line width: it
     /// sums squared differences over an area.
     pub smoothness: f64,
-    /// How much grainy paper adds to the smoothness: it is multiplied by `1 + grain * noise`, with
-    /// [`LineImage::noise`].
+    /// How much grain along the lines adds to the smoothness: it is multiplied by `1 + grain * along`, with the mean
+    /// [`LineImage::noise`], where that says that ink is unsure.
     pub grain: f64,
     /// Weight of the term that makes the normal the second direction where only one is seen, over 0 and up to 1.
     pub normal: f64,
@@ -104,8 +104,9 @@ impl EnergyEstimator {
 
     /// `(c2, c0)` at each pixel of one piece of ink.
     fn solve(&self, image: &LineImage, piece: &Component) -> Vec<Pair> {
+        let noise = image.noise.mean();
         let weights = Weights {
-            smoothness: self.smoothness * (1.0 + self.grain * image.noise.mean().along),
+            smoothness: self.smoothness * (1.0 + self.grain * noise.grain() * noise.along),
             normal: self.normal,
         };
         let system = System::new(piece, &edges(image, piece), &weights);

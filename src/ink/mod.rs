@@ -1,0 +1,115 @@
+//! What of a page is drawing: shadows, stains, ruling and whatever else lies beside the ink is taken off before anything
+//! is measured.
+//!
+//! An [`InkEstimator`] says how much of each pixel is covered by ink. Where that is nothing, the page becomes blank; near
+//! ink it stays as it was scanned, less its paper, so that the places of edges, widths and colours are measured on the
+//! page itself and not on what an estimator made of it.
+
+mod learned;
+mod paper;
+
+pub use learned::LearnedInk;
+
+use crate::cancel::Cancel;
+use crate::error::{Error, Result};
+use crate::load::Scan;
+use crate::raster::Raster;
+use image::{Rgb, RgbImage};
+
+/// Ink of less coverage than this is none: a network's output on paper is not quite 0.
+const LEAST: f32 = 0.1;
+/// How far the blurred edge of a line reaches beyond the pixels that are known to be ink, in pixels.
+const EDGE: i64 = 2;
+/// Coverage from which a pixel tells whether ink is lighter than its paper.
+const CORE: f32 = 0.7;
+
+/// A source of ink coverage for pages.
+pub trait InkEstimator: Send + Sync {
+    /// The share of each pixel that is covered by ink of the drawing, 0 to 1, at the scan's size.
+    ///
+    /// # Errors
+    /// Whatever the source says.
+    fn estimate(&self, scan: &Scan) -> Result<Raster<f32>>;
+
+    /// The same unless told to stop; polled as often as the source can.
+    ///
+    /// # Errors
+    /// The token's, or whatever the source says.
+    fn estimate_until(&self, scan: &Scan, cancel: &Cancel) -> Result<Raster<f32>> {
+        cancel.check()?;
+        self.estimate(scan)
+    }
+}
+
+/// A page without what is not covered by ink: its paper is white, or black where the ink is lighter than the paper.
+///
+/// # Errors
+/// [`Error::InkSize`] when the coverage is not of the scan's size.
+pub fn drawn(scan: &Scan, coverage: &Raster<f32>) -> Result<Scan> {
+    let (page, ink) = (scan.gray.size(), coverage.size());
+    if page != ink {
+        return Err(Error::InkSize { ink, page });
+    }
+    let near = widened(coverage, EDGE);
+    let paper = paper::filled(page, |x, y| color(scan, x, y), &near.mapped(0.0, |c| f32::from(u8::from(c < LEAST))));
+    let is_light = is_lighter(scan, coverage, &paper);
+    let ink = |x: usize, y: usize| {
+        let gate = ((near[(x, y)] - LEAST) / (0.5 - LEAST)).clamp(0.0, 1.0);
+        let (seen, paper) = (color(scan, x, y), paper[(x, y)]);
+        [0, 1, 2].map(|c| gate * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) })
+    };
+    let shade = |ink: f32| if is_light { ink } else { 1.0 - ink };
+    let (width, height) = page;
+    let rgb = scan.rgb.as_ref().map(|_| {
+        RgbImage::from_fn(width as u32, height as u32, |x, y| {
+            Rgb(ink(x as usize, y as usize).map(|ink| (255.0 * shade(ink)).round() as u8))
+        })
+    });
+    let gray = Raster::from_rows(width, height, 0.0, |y, row| {
+        row.iter_mut().enumerate().for_each(|(x, to)| *to = shade(luma(ink(x, y))));
+    });
+    Ok(Scan { gray, rgb, dpi: scan.dpi })
+}
+
+/// The share of the paper's light that ink has taken.
+fn taken(seen: f32, paper: f32) -> f32 {
+    (1.0 - seen / paper.max(1e-3)).clamp(0.0, 1.0)
+}
+
+/// The share of the light which the paper lacks that ink has added.
+fn added(seen: f32, paper: f32) -> f32 {
+    taken(1.0 - seen, 1.0 - paper)
+}
+
+fn color(scan: &Scan, x: usize, y: usize) -> [f32; 3] {
+    let gray = scan.gray[(x, y)];
+    scan.rgb.as_ref().map_or([gray; 3], |rgb| rgb.get_pixel(x as u32, y as u32).0.map(|v| f32::from(v) / 255.0))
+}
+
+/// Lightness of a colour (Rec. 709).
+fn luma([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// Whether most ink is lighter than the paper under it.
+fn is_lighter(scan: &Scan, coverage: &Raster<f32>, paper: &Raster<[f32; 3]>) -> bool {
+    let (width, height) = coverage.size();
+    let cores = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|&p| coverage[p] > CORE);
+    cores.map(|(x, y)| f64::from(luma(color(scan, x, y)) - luma(paper[(x, y)]))).sum::<f64>() > 0.0
+}
+
+/// The most of each pixel and those around it.
+fn widened(raster: &Raster<f32>, reach: i64) -> Raster<f32> {
+    let (width, height) = raster.size();
+    let most = |values: &mut dyn Iterator<Item = Option<f32>>| values.flatten().fold(0.0, f32::max);
+    let rows = Raster::from_rows(width, height, 0.0, |y, row| {
+        for (x, to) in row.iter_mut().enumerate() {
+            *to = most(&mut (-reach..=reach).map(|d| raster.get(x as i64 + d, y as i64)));
+        }
+    });
+    Raster::from_rows(width, height, 0.0, |y, row| {
+        for (x, to) in row.iter_mut().enumerate() {
+            *to = most(&mut (-reach..=reach).map(|d| rows.get(x as i64, y as i64 + d)));
+        }
+    })
+}
