@@ -13,6 +13,13 @@ use kurbo::{Circle, Line, Point, Vec2};
 /// A flagged corner that turns by less than this (22 degrees) is no corner.
 const LEAST_TURN: f64 = 0.38;
 
+/// Lines that end at a corner are led to where they cross, up to a line width from its node; where they run together in a
+/// spike, up to this share of a line width over the sine of half their angle.
+const SPIKE: f64 = 0.25;
+
+/// Lines cross clearly where the sine of their angle is more than this (9 degrees).
+const LEAST_SINE: f64 = 0.15;
+
 /// A line that passes a corner's node by more than this, in line widths, is not bent to end there.
 const ASIDE: f64 = 0.75;
 
@@ -111,11 +118,7 @@ fn section(walk: &[TrailPoint], tolerance: Tolerance) -> Vec<Segment> {
 fn sharpen(a: &mut Segment, b: &mut Segment, node: Point, tolerance: Tolerance) -> Option<Segment> {
     let mut point = node;
     if let (Segment::Line(l), Segment::Line(m)) = (&*a, &*b) {
-        let (d, e) = (l.p1 - l.p0, m.p1 - m.p0);
-        let det = d.cross(e);
-        let crosses = det.abs() > 0.15 * d.hypot() * e.hypot();
-        let crossing = l.p0 + d * ((m.p0 - l.p0).cross(e) / det);
-        if crosses && (crossing - node).hypot() < tolerance.width {
+        if let Some(crossing) = crossing(*l, *m, node, tolerance) {
             point = crossing;
         } else if (l.p1 - node).hypot().max((m.p0 - node).hypot()) > ASIDE * tolerance.width {
             return Some(Segment::Line(Line::new(l.p1, m.p0)));
@@ -128,6 +131,16 @@ fn sharpen(a: &mut Segment, b: &mut Segment, node: Point, tolerance: Tolerance) 
     set_end(a, point);
     set_start(b, point);
     None
+}
+
+/// Where two lines cross, if they do so clearly and near the node at which they end.
+fn crossing(l: Line, m: Line, node: Point, tolerance: Tolerance) -> Option<Point> {
+    let (d, e) = (l.p1 - l.p0, m.p1 - m.p0);
+    let (det, product) = (d.cross(e), d.hypot() * e.hypot());
+    let crossing = l.p0 + d * ((m.p0 - l.p0).cross(e) / det);
+    let sine_of_half = (0.5 + 0.5 * d.dot(e) / product).max(0.0).sqrt();
+    let reach = (SPIKE / sine_of_half).max(1.0) * tolerance.width;
+    (det.abs() > LEAST_SINE * product && (crossing - node).hypot() < reach).then_some(crossing)
 }
 
 fn close_corner(segments: &mut Vec<Segment>, tolerance: Tolerance) {

@@ -32,6 +32,8 @@ const LEAST_LEFT: f64 = 0.35;
 /// of its lines varies by.
 const NEARLY: f64 = 0.03;
 const GRAINS: f64 = 1.5;
+/// Where the mean grain of a line is over this share, its colour is in part that of grain.
+const UNSURE: f64 = 0.1;
 /// Colours are first gathered in cells of this size.
 const CELL: f64 = 0.02;
 /// A pen draws at least this many line widths.
@@ -76,9 +78,10 @@ impl<'a> Pens<'a> {
         Some(pens)
     }
 
-    /// Whether a pixel's colour is more of grain than of its ink.
-    fn is_unsure(&self, p: Point) -> bool {
-        self.image.noise.at(p).grain() >= 0.5
+    /// Whether the colour of what lies at some points is in part that of grain.
+    fn is_unsure(&self, points: &[Point]) -> bool {
+        let grain = points.iter().map(|&p| self.image.noise.at(p).grain()).sum::<f64>();
+        grain > UNSURE * points.len() as f64
     }
 
     /// Black for what hardly differs from it.
@@ -94,29 +97,36 @@ impl<'a> Pens<'a> {
         sorted.sort_by(f64::total_cmp);
         let Some(&typical) = sorted.get(sorted.len() / 2) else { return vec![None; points.len()] };
         let heading = |k: usize| points[(k + 1).min(points.len() - 1)] - points[k.saturating_sub(1)];
+        let is_unsure = self.is_unsure(points);
         let at = |k: usize| {
-            let width = if self.is_unsure(points[k]) { typical } else { widths[k] };
-            self.reading(points[k], heading(k), width, STEP).filter(|_| widths[k].is_finite())
+            let reading = if is_unsure {
+                self.unsure_reading(points[k], typical, STEP)
+            } else {
+                self.reading(points[k], heading(k), widths[k], STEP)
+            };
+            reading.filter(|_| widths[k].is_finite())
         };
         let readings: Vec<Option<Reading>> = (0..points.len()).map(at).collect();
         let lasting = 0.5 * LASTING * self.image.line_width / STEP;
         let mean = |k: usize| {
-            let reach = if self.is_unsure(points[k]) { lasting as usize } else { 0 };
+            let reach = if is_unsure { lasting as usize } else { 0 };
             let near = &readings[k.saturating_sub(reach)..(k + reach + 1).min(readings.len())];
             Reading { color: mean(near.iter().flatten().map(|reading| reading.color)), ..readings[k]? }.into()
         };
         (0..points.len()).map(mean).collect()
     }
 
+    /// The colour of unsure ink at a place of a line of a width.
+    fn unsure_reading(&self, p: Point, width: f64, length: f64) -> Option<Reading> {
+        let color = self.color_among([p].into_iter())?;
+        // What grey lines lack of black on paper is pressure, and paper between the grains.
+        let color = Some(self.unblurred(color, width)).filter(|color| !is_grey(*color)).unwrap_or(Color::BLACK);
+        Some(Reading { color, full: true, length })
+    }
+
     /// The colour of the ink at a place of a line of a heading and a width.
     fn reading(&self, p: Point, heading: Vec2, width: f64, length: f64) -> Option<Reading> {
         let image = self.image;
-        if self.is_unsure(p) {
-            let color = self.color_among([p].into_iter())?;
-            // What grey lines lack of black on paper is pressure, and paper between the grains.
-            let color = Some(self.unblurred(color, width)).filter(|color| !is_grey(*color)).unwrap_or(Color::BLACK);
-            return Some(Reading { color, full: true, length });
-        }
         let normal = if heading.hypot2() > 0.0 { heading.normalize().turn_90() } else { Vec2::new(1.0, 0.0) };
         // Along the line the next pixel may be of another ink, across it is not.
         let color = self.color_among([-1.0, 0.0, 1.0].map(|k| p + normal * (k * image.scale)).into_iter())?;
@@ -149,7 +159,7 @@ impl<'a> Pens<'a> {
     /// The colour of a solid region at a place: of the pixel around it with the most ink, or, so that grain does not count,
     /// of its own on a scan.
     fn color_at(&self, p: Point) -> Option<Color> {
-        let steps = if self.is_unsure(p) { 0..=0 } else { -1..=1 };
+        let steps = if self.is_unsure(&[p]) { 0..=0 } else { -1..=1 };
         let step = |x: i32, y: i32| Vec2::new(x.into(), y.into()) * self.image.scale;
         self.color_among(steps.clone().flat_map(|y| steps.clone().map(move |x| p + step(x, y))))
     }
@@ -235,7 +245,11 @@ impl<'a> Pens<'a> {
     }
 
     fn of_centre(&self, dot: &Dot) -> Option<Reading> {
-        self.reading(dot.centre, Vec2::ZERO, dot.diameter, dot.diameter)
+        let Dot { centre, diameter, .. } = *dot;
+        if self.is_unsure(&[centre]) {
+            return self.unsure_reading(centre, diameter, diameter);
+        }
+        self.reading(centre, Vec2::ZERO, diameter, diameter)
     }
 
     /// The colour of a dot.
