@@ -12,6 +12,18 @@ pub enum Threshold {
     Fixed(f64),
 }
 
+/// How the ink of the drawing is told from everything else on the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Ink {
+    /// As with [`Ink::Threshold`] on a clean render, whose paper has nothing else on it; else as with [`Ink::Learned`].
+    #[default]
+    Auto,
+    /// By a network that has seen shadows, stains, ruled paper, grain and much else that is not ink.
+    Learned,
+    /// By darkness alone.
+    Threshold,
+}
+
 /// Whether the drawing is light on dark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Invert {
@@ -58,6 +70,8 @@ pub struct Options {
     pub min_length: f64,
     /// Specks of ink of at most this many pixels are removed; `None` decides from the image.
     pub despeckle: Option<usize>,
+    /// How the ink of the drawing is told from everything else on the page.
+    pub ink: Ink,
     /// How ink is told from paper.
     pub threshold: Threshold,
     /// Whether the drawing is light on dark.
@@ -77,6 +91,7 @@ impl Default for Options {
             detail: 0.1,
             min_length: 0.5,
             despeckle: None,
+            ink: Ink::Auto,
             threshold: Threshold::Auto,
             invert: Invert::Auto,
             width: StrokeWidth::Measured,

@@ -8,17 +8,16 @@ use crate::estimate::FieldEstimator;
 use crate::field::{FrameField, PolyVectorField};
 use crate::graph::{Passes, StrokeGraph, Work};
 use crate::hooks::Observer;
-use crate::ink::InkEstimator;
+use crate::ink::{InkEstimator, LearnedInk};
 use crate::load::Scan;
-use crate::options::Options;
+use crate::options::{Ink, Options};
 use crate::raster::Raster;
 use crate::{fit, graph, ink, streamline};
-use std::borrow::Cow;
 
 /// Traces scans under one set of options and one estimator.
 pub struct Vectorizer {
     options: Options,
-    ink: Option<Box<dyn InkEstimator>>,
+    ink: Box<dyn InkEstimator>,
     estimator: Box<dyn FieldEstimator>,
     passes: Passes,
 }
@@ -38,13 +37,13 @@ impl Vectorizer {
     /// [`Error::Option`] when an option is out of its range.
     pub fn with(options: Options, estimator: Box<dyn FieldEstimator>) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, ink: None, estimator, passes: Passes::default() })
+        Ok(Self { options, ink: Box::new(LearnedInk::built_in()?), estimator, passes: Passes::default() })
     }
 
-    /// The same with a source of ink.
+    /// The same with a source of ink, which is asked for that of every page: [`Options::ink`] becomes [`Ink::Learned`].
     #[must_use]
     pub fn with_ink_estimator(self, ink: impl InkEstimator + 'static) -> Self {
-        Self { ink: Some(Box::new(ink)), ..self }
+        Self { ink: Box::new(ink), options: Options { ink: Ink::Learned, ..self.options }, ..self }
     }
 
     /// The same with another source of fields.
@@ -89,7 +88,7 @@ impl Vectorizer {
     /// Whatever the estimator or the observer says.
     pub fn graph(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<StrokeGraph> {
         let cancel = observer.cancel();
-        let image = self.line_image(scan, &mut |scan| self.coverage(scan, &cancel), observer)?;
+        let image = self.line_image(scan, None, observer)?;
         self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)
     }
 
@@ -97,41 +96,58 @@ impl Vectorizer {
     ///
     /// # Errors
     /// [`Error::InkSize`] when the map's size is not the scan's; whatever the estimator or the observer says.
-    pub fn trace_with_ink(
-        &self,
-        scan: &Scan,
-        coverage: &Raster<f32>,
-        observer: &mut dyn Observer,
-    ) -> Result<Drawing> {
+    pub fn trace_with_ink(&self, scan: &Scan, coverage: &Raster<f32>, observer: &mut dyn Observer) -> Result<Drawing> {
         let cancel = observer.cancel();
-        let image = self.line_image(scan, &mut |_| Ok(Some(coverage.clone())), observer)?;
+        let image = self.line_image(scan, Some(coverage), observer)?;
         let graph = self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)?;
         self.draw(&graph, observer)
     }
 
-    /// The ink of a scan where it has to be told by an estimator.
-    fn coverage(&self, scan: &Scan, cancel: &Cancel) -> Result<Option<Raster<f32>>> {
-        self.ink.as_ref().map(|ink| ink.estimate_until(scan, cancel)).transpose()
+    /// The ink of a scan, told by the estimator: the share of each pixel that is covered, 0 to 1, at the scan's size.
+    ///
+    /// # Errors
+    /// Whatever the estimator of ink says.
+    pub fn ink(&self, scan: &Scan) -> Result<Raster<f32>> {
+        self.ink.estimate(scan)
     }
 
-    /// The lines of a scan, as the observer left them.
+    /// The lines of a scan, as the observer left them; the caller may know its ink.
     fn line_image(
         &self,
         scan: &Scan,
-        coverage: &mut dyn FnMut(&Scan) -> Result<Option<Raster<f32>>>,
+        coverage: Option<&Raster<f32>>,
         observer: &mut dyn Observer,
     ) -> Result<LineImage> {
-        let drawn = match coverage(scan)? {
-            None => Cow::Borrowed(scan),
-            Some(mut coverage) => {
-                observer.on_ink(scan, &mut coverage)?;
-                Cow::Owned(ink::drawn(scan, &coverage)?)
-            }
+        let mut image = match coverage {
+            Some(coverage) => self.told(scan, coverage.clone(), observer)?,
+            None => self.cleaned(scan, observer)?,
         };
-        let mut image = clean::clean_until(&drawn, &self.options, &observer.cancel())?;
         observer.on_line_image(&mut image)?;
         image.validate()?;
         Ok(image)
+    }
+
+    /// The lines of a scan whose ink is told as the options say.
+    fn cleaned(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<LineImage> {
+        let cancel = observer.cancel();
+        let as_it_is = || clean::clean_until(scan, &self.options, &cancel);
+        if self.options.ink == Ink::Threshold {
+            return as_it_is();
+        }
+        if self.options.ink == Ink::Auto && ink::is_plain(&scan.gray) {
+            let image = as_it_is()?;
+            if image.noise.is_sure() {
+                return Ok(image);
+            }
+        }
+        self.told(scan, self.ink.estimate_until(scan, &cancel)?, observer)
+    }
+
+    /// The lines of a scan whose ink is known.
+    fn told(&self, scan: &Scan, mut coverage: Raster<f32>, observer: &mut dyn Observer) -> Result<LineImage> {
+        observer.on_ink(scan, &mut coverage)?;
+        let drawn = ink::drawn(scan, &coverage)?;
+        clean::clean_until(&drawn, &self.options, &observer.cancel())
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected.
@@ -155,8 +171,7 @@ impl Vectorizer {
         observer: &mut dyn Observer,
     ) -> Result<Drawing> {
         same_size(field, &scan.gray)?;
-        let cancel = observer.cancel();
-        let image = self.line_image(scan, &mut |scan| self.coverage(scan, &cancel), observer)?;
+        let image = self.line_image(scan, None, observer)?;
         let resized = |image: &LineImage| Ok(field.resized(image.ink.width(), image.ink.height()));
         let graph = self.follow(scan, &image, &resized, observer)?;
         self.draw(&graph, observer)
@@ -167,7 +182,7 @@ impl Vectorizer {
     /// # Errors
     /// Whatever the estimator says.
     pub fn field(&self, scan: &Scan) -> Result<PolyVectorField> {
-        let image = clean::clean(scan, &self.options);
+        let image = self.line_image(scan, None, &mut ())?;
         let (width, height) = scan.gray.size();
         let cancel = Cancel::default();
         let mut field = self.estimate(&image, &cancel)?.resized(width, height);

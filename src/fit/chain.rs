@@ -99,16 +99,32 @@ impl<'a> Chain<'a> {
         misfit(self.samples, draft.piece, segments) / noise
     }
 
-    /// Whether some segment leads where there are no points.
+    /// Whether some segment leads where there are no points, of its own piece or of those beside it.
     fn is_astray(&self) -> bool {
         let least = (ASTRAY * self.tolerance.width).powi(2);
-        let mut pieces = self.drafts.iter().zip(&self.segments);
-        pieces.any(|(draft, segments)| {
-            let Piece { from, to, .. } = draft.piece;
-            let course: Vec<Point> = told(from, to).chain([to]).map(|k| self.samples.points[k]).collect();
-            let off = |p: Point| course.windows(2).all(|w| Line::new(w[0], w[1]).nearest(p, 1e-6).distance_sq > least);
-            segments.iter().any(|s| (0..=LOOKED_AT).any(|k| off(s.eval(f64::from(k) / f64::from(LOOKED_AT)))))
+        (0..self.drafts.len()).any(|k| {
+            let courses = self.around(k).map(|i| self.course(i)).collect::<Vec<_>>();
+            let off = |p: Point| {
+                let lines = courses.iter().flat_map(|course| course.windows(2));
+                lines.map(|w| Line::new(w[0], w[1])).all(|line| line.nearest(p, 1e-6).distance_sq > least)
+            };
+            let places = |s: &Segment| (0..=LOOKED_AT).map(|t| s.eval(f64::from(t) / f64::from(LOOKED_AT))).collect();
+            self.segments[k].iter().flat_map(|s| -> Vec<Point> { places(s) }).any(off)
         })
+    }
+
+    /// A piece and those beside it.
+    fn around(&self, k: usize) -> impl Iterator<Item = usize> + use<> {
+        let n = self.drafts.len();
+        let beside =
+            if self.closed { [(k + n - 1) % n, (k + 1) % n] } else { [k.saturating_sub(1), (k + 1).min(n - 1)] };
+        std::iter::once(k).chain(beside)
+    }
+
+    /// Points of a piece, as many as tell enough.
+    fn course(&self, k: usize) -> Vec<Point> {
+        let Piece { from, to, .. } = self.drafts[k].piece;
+        told(from, to).chain([to]).map(|k| self.samples.points[k]).collect()
     }
 
     /// Turns and moves the joints of a piece so that it and its neighbours keep to their points. Lines keep their course.

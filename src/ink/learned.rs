@@ -41,7 +41,11 @@ impl LearnedInk {
 
     /// The coverage of a page looked at by a factor of its size, at that size.
     fn look(&self, scan: &Scan, factor: f64, cancel: &Cancel) -> Result<Raster<f32>> {
-        if factor == 1.0 { self.network.coverage(scan, cancel) } else { self.network.coverage(&smaller(scan, factor), cancel) }
+        if factor == 1.0 {
+            self.network.coverage(scan, cancel)
+        } else {
+            self.network.coverage(&smaller(scan, factor), cancel)
+        }
     }
 }
 

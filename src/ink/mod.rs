@@ -7,8 +7,10 @@
 
 mod learned;
 mod paper;
+mod plain;
 
 pub use learned::LearnedInk;
+pub(crate) use plain::is_plain;
 
 use crate::cancel::Cancel;
 use crate::error::{Error, Result};

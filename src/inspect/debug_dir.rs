@@ -1,6 +1,9 @@
 //! An observer that writes a picture of each stage.
 
-use super::{drawing_overlay, field_overlay, graph_overlay, ink_picture, lines_overlay, streamlines_overlay, to_png};
+use super::{
+    coverage_picture, drawing_overlay, field_overlay, graph_overlay, ink_picture, lines_overlay, streamlines_overlay,
+    to_png,
+};
 use crate::clean::LineImage;
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
@@ -8,13 +11,14 @@ use crate::field::PolyVectorField;
 use crate::graph::{Line, Pass, Ran, StrokeGraph, passes};
 use crate::hooks::Observer;
 use crate::load::Scan;
+use crate::raster::Raster;
 use crate::streamline::Streamline;
 use crate::write::write_file;
-use image::ImageFormat;
+use image::{DynamicImage, ImageFormat};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// Writes `1-ink.png` and, each as `.svg` and `.png`, `2-field`, `3-streamlines`, `4-graph` and
+/// Writes, where an estimator told the ink, `0-coverage.png`, then `1-ink.png` and, each as `.svg` and `.png`, `2-field`, `3-streamlines`, `4-graph` and
 /// `5-strokes` to a folder as a trace goes on, and for each pass of the graph that changed something `4-NUMBER-PASS`, with
 /// `-broad` after it for the lines that are traced apart from the others. Changes nothing.
 #[derive(Debug)]
@@ -50,14 +54,21 @@ impl<'a> DebugDir<'a> {
     }
 }
 
+fn write_png(path: &Path, picture: &DynamicImage) -> Result<()> {
+    let mut png = Cursor::new(Vec::new());
+    let encoded = picture.write_to(&mut png, ImageFormat::Png);
+    encoded.map_err(|e| Error::Write { path: path.to_owned(), cause: std::io::Error::other(e) })?;
+    write_file(path, &png.into_inner())
+}
+
 impl Observer for DebugDir<'_> {
+    fn on_ink(&mut self, _scan: &Scan, coverage: &mut Raster<f32>) -> Result<()> {
+        write_png(&self.folder.join("0-coverage.png"), &coverage_picture(coverage))
+    }
+
     fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
         self.has_broad = image.broad.is_some();
-        let mut png = Cursor::new(Vec::new());
-        let path = self.folder.join("1-ink.png");
-        let encoded = ink_picture(image).write_to(&mut png, ImageFormat::Png);
-        encoded.map_err(|e| Error::Write { path: path.clone(), cause: std::io::Error::other(e) })?;
-        write_file(&path, &png.into_inner())
+        write_png(&self.folder.join("1-ink.png"), &ink_picture(image).into())
     }
 
     fn on_field(&mut self, _image: &LineImage, field: &mut PolyVectorField) -> Result<()> {

@@ -21,6 +21,11 @@ const SHADES: usize = 4;
 const U_COLOR: &str = "#d00000";
 const V_COLOR: &str = "#0050d0";
 
+/// A coverage by ink, 0 to 1, as a picture: black where all of a pixel is covered.
+pub fn coverage_picture(coverage: &Raster<f32>) -> DynamicImage {
+    DynamicImage::ImageLuma8(coverage.map(|c| (255.0 * (1.0 - c).clamp(0.0, 1.0)).round() as u8).into_image())
+}
+
 /// What cleaning made of a scan, a whole number of times the size of the line image: ink of lines in black, solid regions in
 /// orange, and ink that was thrown away in pale blue.
 pub fn ink_picture(image: &LineImage) -> RgbImage {

@@ -13,7 +13,7 @@ mod strokes;
 
 pub use comparison::comparison_overlay;
 pub use debug_dir::DebugDir;
-pub use field::{field_overlay, ink_picture};
+pub use field::{coverage_picture, field_overlay, ink_picture};
 pub use graph::{graph_overlay, streamlines_overlay};
 pub use lines::lines_overlay;
 pub use overlay::to_png;

@@ -5,6 +5,7 @@ mod batch;
 mod eval;
 mod failure;
 mod field;
+mod ink;
 mod interrupt;
 mod report;
 mod source;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
 fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Some(Command::Field(args)) => field::run(&args),
+        Some(Command::Ink(args)) => ink::run(&args),
         Some(Command::Batch(args)) => batch::run(&args),
         None if batch::is_meant(&cli.trace) => batch::run(&cli.trace),
         Some(Command::Eval(args)) => eval::run(&args),

@@ -7,6 +7,8 @@ use fieldtrace::field::PolyVectorField;
 use fieldtrace::graph::{Line, Ran, StrokeGraph};
 use fieldtrace::hooks::Observer;
 use fieldtrace::inspect::DebugDir;
+use fieldtrace::load::Scan;
+use fieldtrace::raster::Raster;
 use fieldtrace::streamline::Streamline;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -103,6 +105,14 @@ impl Watch<'_> {
 }
 
 impl Observer for Watch<'_> {
+    fn on_ink(&mut self, scan: &Scan, coverage: &mut Raster<f32>) -> Result<()> {
+        self.stages.done("ink", || {
+            let covered = coverage.data().iter().filter(|&&c| c > 0.5).count();
+            format!("{:.1} % of the page by the network", 100.0 * covered as f64 / coverage.data().len() as f64)
+        });
+        self.draw(|debug| debug.on_ink(scan, coverage))
+    }
+
     fn on_line_image(&mut self, image: &mut LineImage) -> Result<()> {
         self.stages.done("clean", || {
             let (ink, solids) = (image.mask.count(), image.solids.len());

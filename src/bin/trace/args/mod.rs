@@ -27,6 +27,7 @@ Examples:
   trace '2024-*/*.tif' -o drawings        every drawing that matches
   trace scan.png -o graph.json            the stroke graph, to be looked at or corrected
   trace graph.json -o out.svg             the strokes of a graph
+  trace ink photo.jpg -o ink.png          what is taken for ink
   trace field scan.png -o field.npz       the direction field alone
   trace eval drawings                     how good the traces of a folder of SVGs are
 
@@ -61,6 +62,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Write the field of directions that strokes follow.
     Field(FieldArgs),
+    /// Write what the network takes for ink.
+    Ink(InkArgs),
     /// Compare traces with the strokes that were drawn.
     Eval(EvalArgs),
     /// Train the network that predicts the field, or the one that sees ink.
@@ -120,6 +123,21 @@ pub(crate) struct FieldArgs {
     pub(crate) clean: CleanArgs,
     #[command(flatten)]
     pub(crate) source: FieldSourceArgs,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// The arguments of `trace ink`.
+#[derive(Debug, Args)]
+pub(crate) struct InkArgs {
+    /// The page, or `-` for standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// The PNG to write, black where all of a pixel is ink; `-` is standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) load: LoadArgs,
     #[command(flatten)]
     pub(crate) talk: TalkArgs,
 }

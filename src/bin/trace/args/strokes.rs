@@ -2,7 +2,7 @@
 
 use super::parse_number;
 use clap::{Args, ValueEnum};
-use fieldtrace::options::{self, Dashing, Invert, Options, StrokeWidth, Threshold};
+use fieldtrace::options::{self, Dashing, Ink, Invert, Options, StrokeWidth, Threshold};
 
 /// How ink is told from paper.
 #[derive(Debug, Args)]
@@ -11,6 +11,10 @@ pub(crate) struct CleanArgs {
     /// Options that suit a kind of drawing; those given beside it override it
     #[arg(long, value_name = "KIND")]
     preset: Option<Preset>,
+    /// How ink is told from what else is on the page: `learned` by a network that has seen shadows, stains and ruled paper,
+    /// `threshold` by darkness alone, `auto` by the network except on a clean render [default: auto]
+    #[arg(long, value_name = "HOW", value_parser = parse_ink)]
+    ink: Option<Ink>,
     /// Darkness from which a pixel is ink: `auto`, or between 0 (paper) and 1 (black) [default: auto]
     #[arg(long, value_name = "T", value_parser = parse_threshold, allow_negative_numbers = true)]
     threshold: Option<Threshold>,
@@ -75,6 +79,7 @@ pub(crate) fn options(clean: &CleanArgs, fit: Option<&FitArgs>) -> Options {
         detail: fit.and_then(|f| f.detail).unwrap_or(base.detail),
         min_length: fit.and_then(|f| f.min_length).unwrap_or(base.min_length),
         despeckle: clean.despeckle.or(base.despeckle),
+        ink: clean.ink.unwrap_or(base.ink),
         threshold: clean.threshold.unwrap_or(base.threshold),
         invert: clean.invert.unwrap_or(base.invert),
         width: fit.and_then(|f| f.width).unwrap_or(base.width),
@@ -87,6 +92,15 @@ fn parse_threshold(text: &str) -> Result<Threshold, String> {
     match text {
         "auto" => Ok(Threshold::Auto),
         _ => parse_number(text).map(Threshold::Fixed).map_err(|_| "neither auto nor a number".into()),
+    }
+}
+
+fn parse_ink(text: &str) -> Result<Ink, String> {
+    match text {
+        "auto" => Ok(Ink::Auto),
+        "learned" => Ok(Ink::Learned),
+        "threshold" => Ok(Ink::Threshold),
+        _ => Err("not one of auto, learned, threshold".into()),
     }
 }
 

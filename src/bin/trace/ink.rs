@@ -1,0 +1,38 @@
+//! `trace ink IN -o OUT`: what of a page is ink, alone.
+
+use crate::args::InkArgs;
+use crate::failure::Failure;
+use crate::target;
+use crate::watch::Stages;
+use fieldtrace::Error;
+use fieldtrace::ink::{InkEstimator, LearnedInk};
+use fieldtrace::inspect::coverage_picture;
+use fieldtrace::load::load;
+use fieldtrace::write::write_file;
+use image::ImageFormat;
+use std::io::Cursor;
+
+/// Reads one page and writes its ink.
+pub(crate) fn run(args: &InkArgs) -> Result<(), Failure> {
+    let name = target::name(&args.input);
+    let failed = |e: Error| Failure::of(&name, &e);
+    if !target::is_stream(&args.output) && target::extension(&args.output) != "png" {
+        return Err(Failure::Usage(format!("{}: ink is written as .png", target::name(&args.output))));
+    }
+    target::keep_input(&args.input, &args.output)?;
+    let mut stages = Stages::start(args.talk.verbose);
+    let scan = load(&args.input, &args.load.options()).map_err(failed)?.scan;
+    stages.done("load", || format!("{} x {} pixels", scan.gray.width(), scan.gray.height()));
+    let coverage = LearnedInk::built_in().and_then(|ink| ink.estimate(&scan)).map_err(failed)?;
+    let covered = coverage.data().iter().filter(|&&c| c > 0.5).count();
+    stages.done("ink", || format!("{covered} pixels"));
+    let mut png = Cursor::new(Vec::new());
+    let encoded = coverage_picture(&coverage).write_to(&mut png, ImageFormat::Png);
+    encoded.map_err(|e| failed(Error::Write { path: args.output.clone(), cause: std::io::Error::other(e) }))?;
+    write_file(&args.output, &png.into_inner()).map_err(failed)?;
+    stages.done("write", || format!("a picture to {}", target::name(&args.output)));
+    if covered == 0 && !args.talk.quiet {
+        eprintln!("trace: {name}: warning: no ink was found");
+    }
+    Ok(())
+}
