@@ -7,7 +7,7 @@ use fieldtrace::drawing::{Centreline, Drawing};
 use fieldtrace::field::{PolyVectorField, encode};
 use fieldtrace::hooks::Observer;
 use fieldtrace::load::{LoadOptions, Scan, load_bytes};
-use fieldtrace::options::{Dashing, Invert, Options, StrokeWidth, Threshold};
+use fieldtrace::options::{Dashing, Ink, Invert, Options, StrokeWidth, Threshold};
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::raster::Raster;
 use fieldtrace::write::graph_json::{from_json, to_json};
@@ -130,6 +130,7 @@ impl Bytes<'_> {
             detail: if how & 1 == 0 { 0.1 } else { 0.01 + f64::from(what) / 129.0 },
             min_length: if how & 2 == 0 { 0.5 } else { f64::from(what) / 32.0 },
             despeckle: (how & 4 != 0).then_some(what.into()),
+            ink: if what & 1 == 0 { Ink::Auto } else { Ink::Threshold },
             threshold: if how & 8 == 0 { Threshold::Auto } else { Threshold::Fixed((0.5 + f64::from(what)) / 256.0) },
             invert: if how & 16 == 0 { Invert::Auto } else { Invert::No },
             width: match how >> 5 & 3 {
