@@ -134,7 +134,7 @@ impl Vectorizer {
         if self.options.ink == Ink::Threshold {
             return as_it_is();
         }
-        if self.options.ink == Ink::Auto && ink::is_plain(&scan.gray) {
+        if self.options.ink == Ink::Auto && ink::is_plain(scan) {
             let image = as_it_is()?;
             if image.noise.is_sure() {
                 return Ok(image);
@@ -147,7 +147,7 @@ impl Vectorizer {
     fn told(&self, scan: &Scan, mut coverage: Raster<f32>, observer: &mut dyn Observer) -> Result<LineImage> {
         observer.on_ink(scan, &mut coverage)?;
         let drawn = ink::drawn(scan, &coverage)?;
-        clean::clean_until(&drawn, &self.options, &observer.cancel())
+        clean::clean_drawn(&drawn, scan, &self.options, &observer.cancel())
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected.

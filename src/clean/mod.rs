@@ -54,14 +54,25 @@ pub fn clean(scan: &Scan, options: &Options) -> LineImage {
 /// # Errors
 /// The token's.
 pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
-    let page = Page::of(scan, options.invert);
+    cleaned(Page::of(scan, options.invert), options, cancel)
+}
+
+/// Cleans a scan from which all but the ink has been taken; how grainy its paper is, is to be seen on the scan `as_it_was`.
+///
+/// # Errors
+/// The token's.
+pub(crate) fn clean_drawn(drawn: &Scan, as_it_was: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
+    cleaned(Page::of_drawn(drawn, as_it_was, options.invert), options, cancel)
+}
+
+fn cleaned(page: Page, options: &Options, cancel: &Cancel) -> Result<LineImage> {
     cancel.check()?;
     // Lines are looked at as if all ink were sure before that is known.
     let Told { mut ink, mut mask, mut threshold } = page.inked(&NoiseMap::even(Noise::default()), options.threshold);
     let mut depth = distance(&mask);
     cancel.check()?;
     let mut ridge = Ridge::of(&ink, &mask, &depth);
-    let noise = NoiseMap::of(&ink, &ridge, page.paper);
+    let noise = NoiseMap::of(&ink, &ridge, page.scanned);
     cancel.check()?;
     if !noise.is_sure() {
         Told { ink, mask, threshold } = page.inked(&noise, options.threshold);

@@ -21,8 +21,9 @@ pub(crate) const JOINING: f64 = 0.7;
 pub(super) struct Page {
     /// Whether it was light on dark.
     inverted: bool,
-    /// What is to be seen of its paper.
-    pub paper: Paper,
+    /// What is to be seen of its paper, and of that of its scan, from which all but the ink may have been taken.
+    paper: Paper,
+    pub scanned: Paper,
     /// Its ink, grey, as the share of light that is lost.
     ink: Raster<f32>,
     /// Its inks, where they have hues of their own.
@@ -40,7 +41,14 @@ impl Page {
         let ink = ink_of_gray(&scan.gray, inverted);
         let inks = scan.rgb.as_ref().and_then(|rgb| separate(rgb, &ink, inverted));
         let paper = Paper::of(inks.as_ref().map_or(&ink, |inks| &inks.strength));
-        Self { inverted, paper, ink, inks }
+        Self { inverted, paper, scanned: paper, ink, inks }
+    }
+
+    /// The page that was scanned, from whose scan all but the ink has been taken.
+    pub fn of_drawn(drawn: &Scan, as_it_was: &Scan, invert: Invert) -> Self {
+        let page = Self::of(drawn, invert);
+        let scanned = Paper::of(&ink_of_gray(&as_it_was.gray, page.inverted));
+        Self { scanned: Paper { shades: page.paper.shades, ..scanned }, ..page }
     }
 
     /// The ink, scaled, and its mask, where it can be trusted so far.
@@ -54,7 +62,7 @@ impl Page {
     /// What was decided about it, and the darkness from which a pixel is ink.
     pub fn decisions(&self, threshold: Option<f64>) -> Decisions {
         let hues = self.inks.as_ref().map_or(0, |inks| usize::from(inks.groups) - 1);
-        Decisions { inverted: self.inverted, grain: self.paper.grain, threshold, hues }
+        Decisions { inverted: self.inverted, grain: self.scanned.grain, threshold, hues }
     }
 
     /// The colour of each pixel with the paper's own taken off.
