@@ -45,8 +45,10 @@
 //!
 //! # Hooks
 //!
-//! A [`hooks::Observer`] sees the result of each stage and may change or refuse it. A [`estimate::FieldEstimator`] is
-//! a source of fields of the caller's own, and [`pipeline::Vectorizer::trace_with_field`] takes a finished field:
+//! A [`hooks::Observer`] sees the result of each stage and may change or refuse it. An [`ink::InkEstimator`] tells ink from
+//! everything else on a page, and [`pipeline::Vectorizer::trace_with_ink`] takes a finished map of it. A
+//! [`estimate::FieldEstimator`] is a source of fields of the caller's own, and [`pipeline::Vectorizer::trace_with_field`]
+//! takes a finished field:
 //!
 //! ```
 //! use fieldtrace::field::PolyVectorField;

@@ -11,6 +11,9 @@ use std::io::Cursor;
 /// Spread between channels, of 1, up to which an image still counts as grey: what JPEG makes of a grey original.
 const COLOR_THRESHOLD: f32 = 8.5 / 255.0;
 
+/// Less than this share of the tonal range beside its ground is not seen: a few steps of 8 bits.
+const UNSEEN: f32 = 8.5 / 255.0;
+
 /// Rec. 709 luma of the stored values.
 const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
@@ -132,33 +135,48 @@ fn scan_buffer<P: Pixel<Subpixel: Unit>>(image: &ImageBuffer<P, Vec<P::Subpixel>
     let (width, height) = (image.width() as usize, image.height() as usize);
     let (samples, channels) = (image.as_raw().as_slice(), usize::from(P::CHANNEL_COUNT));
     let rows = || samples.par_chunks_exact(channels * width.max(1));
+    let ground = ground::<P>(samples);
     let gray = Raster::from_rows(width, height, 0.0, |y, row| {
-        let colors = colors::<P>(&samples[y * width * channels..(y + 1) * width * channels]);
+        let colors = colors::<P>(&samples[y * width * channels..(y + 1) * width * channels], ground);
         row.iter_mut().zip(colors).for_each(|(gray, color)| *gray = luma(color));
     });
-    let colored = channels >= 3 && rows().any(|row| colors::<P>(row).any(|color| spread(color) > COLOR_THRESHOLD));
+    let colored =
+        channels >= 3 && rows().any(|row| colors::<P>(row, ground).any(|color| spread(color) > COLOR_THRESHOLD));
     let byte = |v: f32| (v * 255.0).round() as u8;
     let rgb = colored.then(|| {
-        RgbImage::from_fn(image.width(), image.height(), |x, y| Rgb(over_white(image.get_pixel(x, y)).map(byte)))
+        RgbImage::from_fn(image.width(), image.height(), |x, y| Rgb(over(image.get_pixel(x, y), ground).map(byte)))
     });
     Scan { gray, rgb, dpi }
 }
 
-/// The colours of some pixels, given by their samples.
-fn colors<P: Pixel<Subpixel: Unit>>(samples: &[P::Subpixel]) -> impl Iterator<Item = [f32; 3]> {
-    samples.chunks_exact(P::CHANNEL_COUNT.into()).map(|pixel| over_white(P::from_slice(pixel)))
+/// The lightness of what an image with transparency is laid over: white, unless nothing would be seen on white but
+/// something on black.
+fn ground<P: Pixel<Subpixel: Unit>>(samples: &[P::Subpixel]) -> f32 {
+    if P::CHANNEL_COUNT % 2 == 1 {
+        return 1.0;
+    }
+    let most = |ground: f32| {
+        let pixels = samples.par_chunks_exact(P::CHANNEL_COUNT.into());
+        pixels.map(|pixel| (luma(over(P::from_slice(pixel), ground)) - ground).abs()).reduce(|| 0.0, f32::max)
+    };
+    if most(1.0) < UNSEEN && most(0.0) > UNSEEN { 0.0 } else { 1.0 }
 }
 
-/// Red, green and blue in `[0, 1]` of a pixel in front of white.
-fn over_white<P: Pixel<Subpixel: Unit>>(pixel: &P) -> [f32; 3] {
+/// The colours of some pixels, given by their samples, in front of a grey.
+fn colors<P: Pixel<Subpixel: Unit>>(samples: &[P::Subpixel], ground: f32) -> impl Iterator<Item = [f32; 3]> {
+    samples.chunks_exact(P::CHANNEL_COUNT.into()).map(move |pixel| over(P::from_slice(pixel), ground))
+}
+
+/// Red, green and blue in `[0, 1]` of a pixel in front of a grey.
+fn over<P: Pixel<Subpixel: Unit>>(pixel: &P, ground: f32) -> [f32; 3] {
     let (color, alpha) = match *pixel.channels() {
         [l] => ([l.unit(); 3], 1.0),
         [l, a] => ([l.unit(); 3], a.unit()),
         [r, g, b] => ([r.unit(), g.unit(), b.unit()], 1.0),
         [r, g, b, a] => ([r.unit(), g.unit(), b.unit()], a.unit()),
-        _ => ([1.0; 3], 1.0),
+        _ => ([ground; 3], 1.0),
     };
-    if alpha == 1.0 { color } else { color.map(|c| c * alpha + (1.0 - alpha)) }
+    if alpha == 1.0 { color } else { color.map(|c| c * alpha + ground * (1.0 - alpha)) }
 }
 
 /// Lightness; exact for greys.
@@ -178,19 +196,28 @@ mod tests {
 
     #[test]
     fn alpha_lies_over_white() {
-        assert_eq!(luma(over_white(&LumaA([0u8, 0]))), 1.0);
-        assert_eq!(luma(over_white(&LumaA([0u8, 255]))), 0.0);
-        assert!((luma(over_white(&Rgba([0u8, 0, 0, 51]))) - 0.8).abs() < 1e-6);
+        assert_eq!(luma(over(&LumaA([0u8, 0]), 1.0)), 1.0);
+        assert_eq!(luma(over(&LumaA([0u8, 255]), 1.0)), 0.0);
+        assert!((luma(over(&Rgba([0u8, 0, 0, 51]), 1.0)) - 0.8).abs() < 1e-6);
+    }
+
+    #[test]
+    fn white_ink_on_nothing_lies_over_black() {
+        let ink = |x: u32| if x == 1 { LumaA([255u8, 255]) } else { LumaA([255, 0]) };
+        let white = scan(&DynamicImage::ImageLumaA8(ImageBuffer::from_fn(3, 1, |x, _| ink(x))), None);
+        assert_eq!(white.gray.data(), [0.0, 1.0, 0.0]);
+        let nothing = scan(&DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(3, 1, LumaA([255, 0]))), None);
+        assert_eq!(nothing.gray.data(), [1.0; 3]);
     }
 
     #[test]
     fn greys_are_exact_in_every_depth() {
         for v in 0..=255u8 {
-            assert_eq!(luma(over_white(&Rgb([v; 3]))), f32::from(v) / 255.0);
+            assert_eq!(luma(over(&Rgb([v; 3]), 1.0)), f32::from(v) / 255.0);
         }
-        assert_eq!(luma(over_white(&Luma([12345u16]))), 12345.0 / 65535.0);
-        assert_eq!(luma(over_white(&Rgb([0.25f32; 3]))), 0.25);
-        assert_eq!(luma(over_white(&Rgb([f32::NAN; 3]))), 1.0);
+        assert_eq!(luma(over(&Luma([12345u16]), 1.0)), 12345.0 / 65535.0);
+        assert_eq!(luma(over(&Rgb([0.25f32; 3]), 1.0)), 0.25);
+        assert_eq!(luma(over(&Rgb([f32::NAN; 3]), 1.0)), 1.0);
     }
 
     #[test]

@@ -21,7 +21,7 @@ use std::path::Path;
 /// A drawing as it came in, before any cleaning.
 #[derive(Clone, Debug)]
 pub struct Scan {
-    /// Lightness per pixel, 0 black to 1 white, alpha laid over white, upright.
+    /// Lightness per pixel, 0 black to 1 white, alpha laid over white (over black where only that shows it), upright.
     pub gray: Raster<f32>,
     /// The colours, where the input has any; same size as `gray`.
     pub rgb: Option<RgbImage>,
