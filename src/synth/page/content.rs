@@ -16,33 +16,24 @@ const PENS: (f64, f64) = (1.2, 8.0);
 /// The marks of a page.
 #[derive(Clone, Debug)]
 pub(super) struct Content {
-    /// Coverage by the marks of each pen, 0 to 1.
+    /// Coverage by the marks of each pen, 0 to 1, at the page's resolution.
     pub pens: Vec<Raster<f32>>,
-    /// Coverage by all of them.
+    /// Coverage by all of them, at the drawing's.
     pub ink: Raster<f32>,
 }
 
 impl Content {
-    /// A drawing with what else is on its page, drawn with one to three pens.
-    pub fn draw(rng: &mut impl Rng, mut drawing: Drawing) -> Self {
+    /// A drawing with what else is on its page, drawn with one to three pens. A pixel of the page is `pixel` of the
+    /// drawing's wide.
+    pub fn draw(rng: &mut impl Rng, mut drawing: Drawing, pixel: f64) -> Self {
         for stroke in &mut drawing.strokes {
             stroke.width = stroke.width.clamp(PENS.0, PENS.1);
         }
         complete(rng, &mut drawing);
         let ink = render(&drawing);
         let pens = if rng.random_bool(0.25) { rng.random_range(2..4) } else { 1 };
-        if pens == 1 {
-            return Self { pens: vec![ink.clone()], ink };
-        }
-        let pens = shared(rng, &drawing, pens).iter().map(render).collect();
-        Self { pens, ink }
-    }
-
-    /// Takes the marks away where `kept` is 0.
-    pub fn keep(&mut self, kept: &Raster<f32>) {
-        for marks in self.pens.iter_mut().chain([&mut self.ink]) {
-            marks.data_mut().iter_mut().zip(kept.data()).for_each(|(m, k)| *m *= k);
-        }
+        let parts = if pens == 1 { vec![drawing] } else { shared(rng, &drawing, pens) };
+        Self { pens: parts.iter().map(|part| render(&part.scaled(1.0 / pixel))).collect(), ink }
     }
 }
 

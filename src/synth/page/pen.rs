@@ -2,7 +2,7 @@
 
 use super::super::noise::{blur, smooth, white};
 use super::super::shapes::within;
-use super::canvas::{Canvas, Rgb, brightness};
+use super::canvas::{Canvas, Rgb, apart, brightness};
 use super::random::{amount, like, pick, spread};
 use crate::raster::Raster;
 use rand::Rng;
@@ -97,9 +97,7 @@ impl Pen {
 
     /// How far full marks are from a ground, at most 1.
     pub fn contrast(&self, ground: Rgb) -> f32 {
-        let apart = [0, 1, 2].map(|c| (self.color[c] - ground[c]).abs());
-        let largest = apart.into_iter().fold(0.0, f32::max);
-        self.strength * (0.5 * largest + 0.5 * (brightness(self.color) - brightness(ground)).abs())
+        self.strength * (0.5 * apart(self.color, ground) + 0.5 * (brightness(self.color) - brightness(ground)).abs())
     }
 
     pub fn color(&self) -> Rgb {

@@ -3,14 +3,26 @@
 use super::super::config::TrainConfig;
 use super::super::data::Sample;
 use super::super::source::Source;
+use crate::render::render;
 use crate::synth::{self, Kind, Page};
 use crate::unet::MIDDLE;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
+/// Share of a sheet that is some ink.
+const INKED: f32 = 0.02;
+
 /// A page of a kind.
 pub(super) fn page(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig, kind: Kind) -> Page {
-    let (drawing, other) = (source.drawing(rng, config), source.drawing(rng, config));
+    // Of a few drawings the first with some ink on it.
+    let mut drawing = source.drawing(rng, config);
+    for _ in 0..3 {
+        if render(&drawing).data().iter().sum::<f32>() > INKED * (config.sheet * config.sheet) as f32 {
+            break;
+        }
+        drawing = source.drawing(rng, config);
+    }
+    let other = source.drawing(rng, config);
     synth::page(rng, kind, drawing, &other)
 }
 
