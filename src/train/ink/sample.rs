@@ -26,8 +26,13 @@ pub(super) fn page(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig, 
     synth::page(rng, kind, drawing, &other)
 }
 
-/// The crops of one page of a kind that is trained on.
+/// The crops of one page, drawn or of one's own.
 pub(in super::super) fn crops(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig) -> Vec<Sample> {
+    if rng.random_bool(config.page_share)
+        && let Some(page) = source.page(rng)
+    {
+        return (0..config.crops_a_sheet).map(|_| page.crop(rng, config.crop)).collect();
+    }
     let kind = Kind::draw(rng, &config.held_out);
     let page = page(rng, source, config, kind);
     let whole = Sample::of_page(&page);
