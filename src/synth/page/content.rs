@@ -59,7 +59,8 @@ fn complete(rng: &mut impl Rng, drawing: &mut Drawing) {
     if rng.random_bool(0.12) {
         hatching(rng, drawing);
     }
-    if rng.random_bool(0.05) {
+    // A grid alone on its page could be the paper's.
+    if !drawing.strokes.is_empty() && rng.random_bool(0.03) {
         grid(rng, drawing);
     }
 }

@@ -105,7 +105,7 @@ pub(super) fn two_tones(rng: &mut impl Rng, canvas: &mut Canvas) {
     let seen = averaged(&blur(&gray, within(rng, 0.2, 0.9)), coarse);
     let level = midway(&seen) + 0.06 * gaussian(rng) as f32;
     let noise = spread(rng, 0.01, 0.22) as f32;
-    let errors = spread(rng, 2e-4, 0.03) as f32;
+    let errors = spread(rng, 5e-4, 0.05) as f32;
     let bits = seen.map(|v| {
         let bit = v + noise * gaussian(rng) as f32 > level;
         let wrong = rng.random::<f32>() < errors;

@@ -44,7 +44,7 @@ pub fn page(rng: &mut impl Rng, kind: Kind, drawing: Drawing, other: &Drawing) -
     let pixel = if rng.random_bool(0.25) { spread(rng, 0.5, 2.0) } else { 1.0 };
     let content = Content::draw(rng, drawing, pixel);
     let ground = like(rng, recipe.papers, 0.04);
-    let inverted = kind == Kind::Clean && rng.random_bool(0.12);
+    let inverted = kind == Kind::Clean && rng.random_bool(0.2);
     let pens: Vec<Pen> = content.pens.iter().map(|_| Pen::draw(rng, recipe.media, ground)).collect();
     let contrast = faintest(&pens, ground);
     // Nobody would see a faint mark on a sheet as rough as a bold one's.
