@@ -27,7 +27,7 @@ impl Stored {
     /// # Errors
     /// [`Error::Read`] when the folder cannot be listed; [`Error::Train`] when there is no page in it.
     pub fn read(folder: &Path, side: usize) -> Result<(Vec<Self>, Vec<Skipped>)> {
-        let is_page = |path: &Path| !path.with_extension("").extension().is_some_and(|e| e == "ink");
+        let is_page = |path: &Path| path.with_extension("").extension().is_none_or(|e| e != "ink");
         let paths: Vec<_> = files(folder, "png")?.into_iter().filter(|path| is_page(path)).collect();
         let read = paths.into_par_iter().map(|path| (Self::of(&path, side), path)).collect::<Vec<_>>();
         let (mut pages, mut skipped) = (Vec::new(), Vec::new());
