@@ -90,8 +90,8 @@ impl Kind {
     /// Share of the pages, relative to others.
     fn share(self) -> f64 {
         match self {
-            Self::Clean | Self::Scan | Self::Copy | Self::Old | Self::Ruled => 10.0,
-            Self::Photo | Self::Pencil => 13.0,
+            Self::Clean | Self::Scan | Self::Copy | Self::Old => 10.0,
+            Self::Photo | Self::Pencil | Self::Ruled => 13.0,
             // Pale marks on dark are learned last: a network of 5 in 100 takes them for paper for long.
             Self::Blueprint | Self::Board => 11.0,
             Self::Fax | Self::Tinted => 7.0,

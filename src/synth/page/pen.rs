@@ -63,8 +63,9 @@ const PALE: [Rgb; 6] = [
     [0.98, 0.65, 0.7],
 ];
 
-/// Least difference from the ground of anything that counts as a mark, of 1.
-const VISIBLE: f32 = 0.1;
+/// Least difference from the ground of faint marks, such as those of hard pencils, and of any others, of 1.
+const FAINT: f32 = 0.1;
+const VISIBLE: f32 = 0.22;
 
 impl Pen {
     /// A pen of one of some media, which can be seen on a ground.
@@ -86,11 +87,11 @@ impl Pen {
             _ => amount(rng, strength),
         };
         let mut pen = Self { medium, color, strength };
-        let seen = pen.contrast(ground);
-        if seen < VISIBLE {
+        let least = if matches!(medium, Medium::Pencil | Medium::Crayon) { FAINT } else { VISIBLE };
+        if pen.contrast(ground) < least {
             // Darker, or paler on a dark ground, and as strong as it takes.
             pen.color = if brightness(ground) > 0.4 { [0.1; 3] } else { [0.95; 3] };
-            pen.strength = pen.strength.max(2.0 * VISIBLE);
+            pen.strength = pen.strength.max(2.0 * least);
         }
         pen
     }
