@@ -50,7 +50,7 @@ fn complete(rng: &mut impl Rng, drawing: &mut Drawing) {
     if rng.random_bool(0.22) {
         writing(rng, drawing);
     }
-    if rng.random_bool(0.18) {
+    if rng.random_bool(0.22) {
         solids(rng, drawing);
     }
     if rng.random_bool(0.12) {
@@ -60,7 +60,7 @@ fn complete(rng: &mut impl Rng, drawing: &mut Drawing) {
         hatching(rng, drawing);
     }
     // A grid alone on its page could be the paper's.
-    if !drawing.strokes.is_empty() && rng.random_bool(0.03) {
+    if !drawing.strokes.is_empty() && rng.random_bool(0.02) {
         grid(rng, drawing);
     }
 }
@@ -125,7 +125,7 @@ fn letter(rng: &mut impl Rng, drawing: &mut Drawing, (at, right, up): (Point, Ve
 fn solids(rng: &mut impl Rng, drawing: &mut Drawing) {
     for _ in 0..rng.random_range(1..4) {
         let (p, angle) = (place(rng, drawing.width, 0.05), heading(rng));
-        let radius = spread(rng, 4.0, 40.0);
+        let radius = spread(rng, 4.0, 90.0);
         let shape = match rng.random_range(0..4) {
             0 => blob(rng, p, radius),
             1 => polygon(rng, p, radius, angle),
