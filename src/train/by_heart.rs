@@ -8,7 +8,7 @@ use super::data::batch;
 use super::loss::{Batch, Loss};
 use super::source::Source;
 use crate::error::{Error, Result};
-use crate::unet::UNet;
+use crate::unet::{Output, UNet};
 use burn::module::{Module, ModuleVisitor, Param};
 use burn::optim::{GradientsParams, LBFGSConfig, LineSearchFn};
 use burn::tensor::{Device, Tensor};
@@ -36,6 +36,9 @@ pub struct Iteration {
 /// [`Error::Train`] when the configuration is not sound or the loss is no longer a number.
 pub fn by_heart(config: &TrainConfig, device: &Device, mut told: impl FnMut(Iteration)) -> Result<UNet> {
     config.validate()?;
+    if config.network.output != Output::Field {
+        return Err(Error::Train { reason: "only fields are learned by heart".into() });
+    }
     let device = device.clone().autodiff();
     let sample = batch(config, &Source::synthetic(), 0);
     let plane = config.crop * config.crop;

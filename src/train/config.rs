@@ -51,6 +51,10 @@ pub struct TrainConfig {
     pub svgs: Option<PathBuf>,
     /// Share of the sheets that show one of those.
     pub svg_share: f64,
+    /// A folder of pages with their ink to mix in where ink is trained: [`Source::add_pages`].
+    pub pages: Option<PathBuf>,
+    /// Share of the crops that are of those.
+    pub page_share: f64,
     /// Steps between validations.
     pub validate_every: usize,
     /// Drawings to validate on, each as clean and, where scans are trained on, as scan, or pages of each kind; 0 validates
@@ -86,6 +90,8 @@ impl Default for TrainConfig {
             primitives: 0,
             svgs: None,
             svg_share: 0.5,
+            pages: None,
+            page_share: 0.5,
             validate_every: 500,
             validation_sheets: 48,
             checkpoint_seconds: 120,
@@ -129,8 +135,8 @@ impl TrainConfig {
             let shape = "network.width is at least 1 and network.patch 1 or 2";
             return fail(format!("{shape}; input \"color\" and output \"ink\" go together"));
         }
-        if self.network.output == Output::Ink && (self.images > 0 || self.turns || self.primitives > 0) {
-            return fail("images, turns and primitives are not for ink".into());
+        if self.network.output == Output::Ink && (self.images > 0 || self.primitives > 0) {
+            return fail("images and primitives are not for ink".into());
         }
         if self.crop == 0 || !self.crop.is_multiple_of(multiple) {
             return fail(format!("crop is {} and has to be a multiple of {multiple}", self.crop));
@@ -147,8 +153,8 @@ impl TrainConfig {
         if self.validation_sheets == 0 && self.images == 0 {
             return fail("validation_sheets is 0, which needs a set of images".into());
         }
-        if !(0.0..=1.0).contains(&self.svg_share) {
-            return fail("svg_share is between 0 and 1".into());
+        if [self.svg_share, self.page_share].iter().any(|share| !(0.0..=1.0).contains(share)) {
+            return fail("svg_share and page_share are between 0 and 1".into());
         }
         if !(0.0..=1.0).contains(&self.scans) || self.rate.is_nan() || self.rate <= 0.0 {
             return fail("scans is between 0 and 1, and rate is positive".into());
@@ -156,12 +162,17 @@ impl TrainConfig {
         Ok(())
     }
 
-    /// The drawings that are drawn from, and the SVGs that were left out.
+    /// What is drawn from, and the files that were left out.
     ///
     /// # Errors
-    /// As [`Source::with_svgs`].
+    /// As [`Source::with_svgs`] and [`Source::add_pages`].
     pub fn source(&self) -> Result<(Source, Vec<Skipped>)> {
-        self.svgs.as_deref().map_or_else(|| Ok((Source::synthetic(), Vec::new())), Source::with_svgs)
+        let drawings = self.svgs.as_deref().map(Source::with_svgs).transpose()?;
+        let (mut source, mut skipped) = drawings.unwrap_or_default();
+        if let Some(folder) = &self.pages {
+            skipped.extend(source.add_pages(folder, self.crop)?);
+        }
+        Ok((source, skipped))
     }
 
     /// Whether some of the data are scans.

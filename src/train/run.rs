@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// What a caller hears while training goes on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Progress {
     /// Steps done.
     pub step: usize,
@@ -155,8 +155,8 @@ impl Trainer {
             let validation = due.then(|| self.judge.run(&self.model.valid(), &plain));
             self.state.seconds += begin.elapsed().as_secs_f64();
             let report = self.report(validation);
-            if let Some(validation) = validation {
-                self.keep(&report, &validation)?;
+            if let Some(validation) = &report.validation {
+                self.keep(&report, validation)?;
             }
             let go_on = progress(&report) && !self.is_stale();
             let finished = !go_on || done == self.config.steps;

@@ -1,6 +1,7 @@
 //! Where drawings to train on come from, and how the network gets to see them.
 
 use super::config::TrainConfig;
+use super::ink::Stored;
 use crate::clean::clean;
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
@@ -19,13 +20,14 @@ use walkdir::WalkDir;
 /// Longer side in pixels that SVG drawings are read at; they are scaled from there.
 const READ_SIDE: u32 = 512;
 
-/// Drawings of others beside the synthetic ones.
+/// Drawings of others beside the synthetic ones, and pages with their ink.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
     drawings: Vec<Drawing>,
+    pages: Vec<Stored>,
 }
 
-/// An SVG that cannot be trained on, and why.
+/// A file that cannot be trained on, and why.
 pub type Skipped = (PathBuf, String);
 
 impl Source {
@@ -40,7 +42,7 @@ impl Source {
     /// # Errors
     /// [`Error::Read`] when the folder cannot be listed; [`Error::Train`] when nothing in it has strokes.
     pub fn with_svgs(folder: &Path) -> Result<(Self, Vec<Skipped>)> {
-        let read: Vec<_> = list(folder)?.into_par_iter().map(|path| (strokes_of(&path), path)).collect();
+        let read: Vec<_> = files(folder, "svg")?.into_par_iter().map(|path| (strokes_of(&path), path)).collect();
         let (mut drawings, mut skipped) = (Vec::new(), Vec::new());
         for (result, path) in read {
             match result {
@@ -51,7 +53,23 @@ impl Source {
         if drawings.is_empty() {
             return Err(Error::Train { reason: format!("{}: holds no SVG with strokes", folder.display()) });
         }
-        Ok((Self { drawings }, skipped))
+        Ok((Self { drawings, pages: Vec::new() }, skipped))
+    }
+
+    /// Adds the pages in a folder and the folders in it: `NAME.png`, its ink being black on white in `NAME.ink.png` or the
+    /// strokes and solids of `NAME.svg`. Gives those that cannot be read, or are smaller than a side, which are left out.
+    ///
+    /// # Errors
+    /// [`Error::Read`] when the folder cannot be listed; [`Error::Train`] when there is no page in it.
+    pub fn add_pages(&mut self, folder: &Path, side: usize) -> Result<Vec<Skipped>> {
+        let (pages, skipped) = Stored::read(folder, side)?;
+        self.pages.extend(pages);
+        Ok(skipped)
+    }
+
+    /// One of the pages, if there are any.
+    pub(super) fn page(&self, rng: &mut impl Rng) -> Option<&Stored> {
+        (!self.pages.is_empty()).then(|| &self.pages[rng.random_range(0..self.pages.len())])
     }
 
     /// Number of drawings by others.
@@ -126,13 +144,13 @@ fn strokes_of(path: &Path) -> std::result::Result<Drawing, String> {
     if drawing.strokes.is_empty() { Err("has no strokes".into()) } else { Ok(drawing) }
 }
 
-/// The SVGs of a folder and of the folders in it.
-fn list(folder: &Path) -> Result<Vec<PathBuf>> {
+/// The files with an ending in a folder and the folders in it.
+pub(super) fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for entry in WalkDir::new(folder).follow_links(true) {
         let entry = entry.map_err(|e| Error::Read { input: folder.display().to_string(), cause: e.into() })?;
-        let is_svg = entry.path().extension().is_some_and(|e| e.eq_ignore_ascii_case("svg"));
-        if is_svg && !entry.file_type().is_dir() {
+        let matches = entry.path().extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+        if matches && !entry.file_type().is_dir() {
             paths.push(entry.into_path());
         }
     }

@@ -51,12 +51,12 @@ impl Cost {
 }
 
 /// Errors of a network on what it was not trained on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Of a field.
     Field(Validation),
     /// Of ink.
-    Ink(InkValidation),
+    Ink(Box<InkValidation>),
 }
 
 impl Verdict {
@@ -119,7 +119,7 @@ impl Judge {
     pub fn run(&self, model: &UNet, device: &Device) -> Verdict {
         match self {
             Self::Field(validator) => Verdict::Field(validator.run(model, device)),
-            Self::Ink(validator) => Verdict::Ink(validator.run(model, device)),
+            Self::Ink(validator) => Verdict::Ink(Box::new(validator.run(model, device))),
         }
     }
 

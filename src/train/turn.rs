@@ -49,7 +49,10 @@ impl Sample {
     pub fn turned(&self, turn: Turn, side: usize) -> Self {
         let [re2, im2, ..] = turn.signs();
         let (input, field) = signs(turn.signs());
-        let signs: [&[f32]; 5] = [&input, &field, &field, &[re2, im2, re2, im2], &[1.0; 3]];
+        let roots = [re2, im2, re2, im2];
+        // Colours and ink have no direction.
+        let signs: [&[f32]; 5] =
+            if self.roots.is_empty() { [&[1.0; 3]; 5] } else { [&input, &field, &field, &roots, &[1.0; 3]] };
         let place = |i: usize| {
             let (x, y) = turn.moved((i % side, i / side), side);
             y * side + x

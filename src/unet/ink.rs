@@ -153,6 +153,15 @@ mod tests {
     }
 
     #[test]
+    fn the_built_in_network_sees_a_line_on_grey_paper() {
+        let line = |y: usize| if (30..34).contains(&y) { 0.2 } else { 0.8 };
+        let page = Scan { gray: Raster::from_fn(120, 64, |_, y| line(y)), rgb: None, dpi: None };
+        let ink = InkNet::built_in().unwrap().coverage(&page, &Cancel::default()).unwrap();
+        assert!(ink[(60, 31)] > 0.5 && ink[(60, 32)] > 0.5, "{} {}", ink[(60, 31)], ink[(60, 32)]);
+        assert!(ink[(60, 10)] < 0.3 && ink[(60, 54)] < 0.3, "{} {}", ink[(60, 10)], ink[(60, 54)]);
+    }
+
+    #[test]
     fn tiles_cover_each_pixel_once() {
         for size in [(1, 1), (700, 40), (1200, 1090)] {
             let mut count = Raster::filled(size.0, size.1, 0);

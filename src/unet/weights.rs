@@ -123,6 +123,7 @@ mod tests {
     #[test]
     fn the_built_in_weights_can_be_read() {
         assert_eq!(Weights::built_in().unwrap().config(), UNetConfig::default());
+        assert_eq!(Weights::built_in_ink().unwrap().config(), UNetConfig::ink());
     }
 
     #[test]

@@ -68,6 +68,9 @@ fn config(args: &TrainArgs) -> fieldtrace::Result<TrainConfig> {
     if let Some(folder) = &args.svgs {
         config.svgs = Some(folder.clone());
     }
+    if let Some(folder) = &args.pages {
+        config.pages = Some(folder.clone());
+    }
     config.validate()?;
     Ok(config)
 }

@@ -58,15 +58,12 @@ pub(super) fn sharpen(rng: &mut impl Rng, canvas: &mut Canvas) {
     });
 }
 
-/// Contrast that ends in pure white, in pure black or in both.
-pub(super) fn clip(rng: &mut impl Rng, canvas: &mut Canvas) {
-    let gray = canvas.gray();
-    let mut values = gray.data().to_vec();
-    values.sort_by(f32::total_cmp);
-    let at = |share: f64| values[((values.len() - 1) as f64 * share) as usize];
-    let (low, high) = (at(0.02), at(0.7));
+/// Contrast that ends in pure white, in pure black or in both; marks of a contrast stay to be seen.
+pub(super) fn clip(rng: &mut impl Rng, canvas: &mut Canvas, contrast: f32) {
+    let bright = if contrast > 0.4 { within(rng, 0.6, 0.95) } else { 0.95 };
+    let (low, high) = (canvas.quantile(0.02), canvas.quantile(bright));
     // White begins near the paper's brightness, black somewhere below the ink's.
-    let white = high - 0.25 * (high - low).max(0.02) * rng.random::<f32>();
+    let white = high - 0.35 * contrast * rng.random::<f32>();
     let black = if rng.random_bool(0.5) { (low - 0.2 * rng.random::<f32>()).max(0.0) } else { 0.0 };
     let gain = 1.0 / (white - black).max(0.1);
     canvas.map(|v| (v - black) * gain);

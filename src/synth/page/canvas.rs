@@ -11,6 +11,11 @@ pub(super) fn brightness(color: Rgb) -> f32 {
     0.299 * color[0] + 0.587 * color[1] + 0.114 * color[2]
 }
 
+/// The largest difference of two colours in a channel.
+pub(super) fn apart(a: Rgb, b: Rgb) -> f32 {
+    [0, 1, 2].map(|c| (a[c] - b[c]).abs()).into_iter().fold(0.0, f32::max)
+}
+
 /// An image in colour, 0 to 1 a channel unless an effect goes beyond for a while.
 #[derive(Clone, Debug)]
 pub(super) struct Canvas {
@@ -79,6 +84,13 @@ impl Canvas {
         let [r, g, b] = [0, 1, 2].map(|c| self.planes[c].data());
         let gray = r.iter().zip(g).zip(b).map(|((r, g), b)| brightness([*r, *g, *b])).collect();
         Raster::from_vec(width, height, gray).expect("planes of one size")
+    }
+
+    /// The brightness that a share of the pixels, 0 to 1, stays below.
+    pub fn quantile(&self, share: f64) -> f32 {
+        let mut values = self.gray().data().to_vec();
+        let at = ((values.len() - 1) as f64 * share) as usize;
+        *values.select_nth_unstable_by(at, f32::total_cmp).1
     }
 
     /// Takes the colour away, wholly or in part.

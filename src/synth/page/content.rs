@@ -16,33 +16,24 @@ const PENS: (f64, f64) = (1.2, 8.0);
 /// The marks of a page.
 #[derive(Clone, Debug)]
 pub(super) struct Content {
-    /// Coverage by the marks of each pen, 0 to 1.
+    /// Coverage by the marks of each pen, 0 to 1, at the page's resolution.
     pub pens: Vec<Raster<f32>>,
-    /// Coverage by all of them.
+    /// Coverage by all of them, at the drawing's.
     pub ink: Raster<f32>,
 }
 
 impl Content {
-    /// A drawing with what else is on its page, drawn with one to three pens.
-    pub fn draw(rng: &mut impl Rng, mut drawing: Drawing) -> Self {
+    /// A drawing with what else is on its page, drawn with one to three pens. A pixel of the page is `pixel` of the
+    /// drawing's wide.
+    pub fn draw(rng: &mut impl Rng, mut drawing: Drawing, pixel: f64) -> Self {
         for stroke in &mut drawing.strokes {
             stroke.width = stroke.width.clamp(PENS.0, PENS.1);
         }
         complete(rng, &mut drawing);
         let ink = render(&drawing);
         let pens = if rng.random_bool(0.25) { rng.random_range(2..4) } else { 1 };
-        if pens == 1 {
-            return Self { pens: vec![ink.clone()], ink };
-        }
-        let pens = shared(rng, &drawing, pens).iter().map(render).collect();
-        Self { pens, ink }
-    }
-
-    /// Takes the marks away where `kept` is 0.
-    pub fn keep(&mut self, kept: &Raster<f32>) {
-        for marks in self.pens.iter_mut().chain([&mut self.ink]) {
-            marks.data_mut().iter_mut().zip(kept.data()).for_each(|(m, k)| *m *= k);
-        }
+        let parts = if pens == 1 { vec![drawing] } else { shared(rng, &drawing, pens) };
+        Self { pens: parts.iter().map(|part| render(&part.scaled(1.0 / pixel))).collect(), ink }
     }
 }
 
@@ -59,7 +50,7 @@ fn complete(rng: &mut impl Rng, drawing: &mut Drawing) {
     if rng.random_bool(0.22) {
         writing(rng, drawing);
     }
-    if rng.random_bool(0.18) {
+    if rng.random_bool(0.22) {
         solids(rng, drawing);
     }
     if rng.random_bool(0.12) {
@@ -68,7 +59,8 @@ fn complete(rng: &mut impl Rng, drawing: &mut Drawing) {
     if rng.random_bool(0.12) {
         hatching(rng, drawing);
     }
-    if rng.random_bool(0.05) {
+    // A grid alone on its page could be the paper's.
+    if !drawing.strokes.is_empty() && rng.random_bool(0.02) {
         grid(rng, drawing);
     }
 }
@@ -133,7 +125,7 @@ fn letter(rng: &mut impl Rng, drawing: &mut Drawing, (at, right, up): (Point, Ve
 fn solids(rng: &mut impl Rng, drawing: &mut Drawing) {
     for _ in 0..rng.random_range(1..4) {
         let (p, angle) = (place(rng, drawing.width, 0.05), heading(rng));
-        let radius = spread(rng, 4.0, 40.0);
+        let radius = spread(rng, 4.0, 90.0);
         let shape = match rng.random_range(0..4) {
             0 => blob(rng, p, radius),
             1 => polygon(rng, p, radius, angle),

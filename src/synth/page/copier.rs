@@ -8,12 +8,14 @@ use super::random::{amount, clouds, place, spread};
 use crate::raster::Raster;
 use rand::Rng;
 
-/// A copy of a copy: grey, of hard contrast, with what the drum and the glass leave.
-pub(super) fn copied(rng: &mut impl Rng, canvas: &mut Canvas) {
+/// A copy of a copy: grey, of hard contrast, with what the drum and the glass leave. Marks of a contrast stay to be seen.
+pub(super) fn copied(rng: &mut impl Rng, canvas: &mut Canvas, contrast: f32) {
     canvas.fade(1.0);
     if rng.random_bool(0.6) {
-        let (middle, hard) = (amount(rng, (0.4, 0.75)), spread(rng, 3.0, 14.0) as f32);
         canvas.blur(within(rng, 0.3, 1.0));
+        let paper = canvas.quantile(0.8);
+        let (middle, hard) = (paper - contrast * amount(rng, (0.2, 0.7)), spread(rng, 3.0, 10.0) as f32);
+        let hard = hard / contrast.max(0.25);
         canvas.map(|v| 1.0 / (1.0 + (-(v - middle) * hard).exp()));
     }
     if rng.random_bool(0.35) {
@@ -103,7 +105,7 @@ pub(super) fn two_tones(rng: &mut impl Rng, canvas: &mut Canvas) {
     let seen = averaged(&blur(&gray, within(rng, 0.2, 0.9)), coarse);
     let level = midway(&seen) + 0.06 * gaussian(rng) as f32;
     let noise = spread(rng, 0.01, 0.22) as f32;
-    let errors = spread(rng, 2e-4, 0.03) as f32;
+    let errors = spread(rng, 5e-4, 0.05) as f32;
     let bits = seen.map(|v| {
         let bit = v + noise * gaussian(rng) as f32 > level;
         let wrong = rng.random::<f32>() < errors;

@@ -49,9 +49,11 @@ pub(super) fn shadow(rng: &mut impl Rng, canvas: &mut Canvas) {
         1 => bar(rng, size),
         _ => convex(rng, size),
     };
-    let sigma = if rng.random_bool(0.35) { within(rng, 0.3, 1.5) } else { spread(rng, 1.5, 14.0) };
+    let hard = rng.random_bool(0.35);
+    let sigma = if hard { within(rng, 0.3, 1.5) } else { spread(rng, 1.5, 14.0) };
     let shape = blur(&shape, sigma);
-    let depth = amount(rng, (0.12, 0.75));
+    // A hard shadow as dark as ink would be taken for a solid.
+    let depth = amount(rng, (0.12, if hard { 0.5 } else { 0.75 }));
     let tint = if rng.random_bool(0.4) { 0.1 * depth } else { 0.0 };
     for (plane, depth) in canvas.planes.iter_mut().zip([depth + tint, depth, depth - tint]) {
         plane.data_mut().iter_mut().zip(shape.data()).for_each(|(v, s)| *v *= 1.0 - depth.min(0.9) * s);

@@ -20,7 +20,7 @@ pub use kind::Kind;
 use super::shapes::within;
 use crate::drawing::Drawing;
 use crate::raster::Raster;
-use canvas::{Canvas, Rgb, brightness};
+use canvas::{Canvas, Rgb, apart, brightness};
 use content::Content;
 use kind::Recipe;
 use pen::Pen;
@@ -36,27 +36,55 @@ pub struct Page {
     pub ink: Raster<f32>,
 }
 
-/// A page of a kind that shows one drawing, and traces of another.
+/// A page of a kind that shows one drawing, and traces of another of its size.
 pub fn page(rng: &mut impl Rng, kind: Kind, drawing: Drawing, other: &Drawing) -> Page {
     let mut recipe = kind.recipe();
     mixed(rng, &mut recipe);
-    let mut content = Content::draw(rng, drawing);
-    let size = content.ink.size();
+    // Images are brought to a size that the network knows, from a larger or a smaller one.
+    let pixel = if rng.random_bool(0.25) { spread(rng, 0.5, 2.0) } else { 1.0 };
+    let content = Content::draw(rng, drawing, pixel);
     let ground = like(rng, recipe.papers, 0.04);
-    let inverted = kind == Kind::Clean && rng.random_bool(0.12);
+    let inverted = kind == Kind::Clean && rng.random_bool(0.2);
     let pens: Vec<Pen> = content.pens.iter().map(|_| Pen::draw(rng, recipe.media, ground)).collect();
-    let contrast = pens.iter().map(|p| p.contrast(ground)).fold(1.0, f32::min);
-    let mut canvas = paper::sheet(rng, size, ground, recipe.rough);
-    below(rng, &mut canvas, &recipe, (ground, contrast), other);
+    let contrast = faintest(&pens, ground);
+    // Nobody would see a faint mark on a sheet as rough as a bold one's.
+    let rough = (3.0 * contrast).min(1.0);
+    let mut canvas = paper::sheet(rng, content.pens[0].size(), ground, (recipe.rough, rough));
+    below(rng, &mut canvas, &recipe, (ground, &pens), &other.scaled(1.0 / pixel));
     draw(rng, &mut canvas, &recipe, &content, &pens);
-    above(rng, &mut canvas, &recipe, &mut content);
+    let kept = above(rng, &mut canvas, &recipe);
     lit(rng, &mut canvas, &recipe);
     reproduced(rng, &mut canvas, &recipe, contrast);
     if inverted {
         canvas.map(|v| 1.0 - v);
     }
     canvas.map(|v| v.clamp(0.0, 1.0));
-    Page { color: canvas.planes, ink: content.ink }
+    let size = content.ink.size();
+    let brought = |plane: Raster<f32>| if pixel == 1.0 { plane } else { resampled(&plane, size, pixel) };
+    let (mut ink, kept) = (content.ink, brought(kept));
+    ink.data_mut().iter_mut().zip(kept.data()).for_each(|(i, k)| *i *= k);
+    Page { color: canvas.planes.map(brought), ink }
+}
+
+/// The contrast of the pen that is seen least.
+fn faintest(pens: &[Pen], ground: Rgb) -> f32 {
+    pens.iter().map(|pen| pen.contrast(ground)).fold(1.0, f32::min)
+}
+
+/// An image at another resolution: a pixel of it is `pixel` of the result's wide.
+fn resampled(image: &Raster<f32>, (width, height): (usize, usize), pixel: f64) -> Raster<f32> {
+    // Where pixels become larger they are means of all that they cover.
+    let samples = (1.0 / pixel).ceil() as usize;
+    let spots: Vec<f64> = (0..samples).map(|i| (i as f64 + 0.5) / samples as f64).collect();
+    let inside = |v: f64, n: usize| (v / pixel).clamp(0.5, n as f64 - 0.5);
+    Raster::from_fn(width, height, |x, y| {
+        let at = |dx: &f64, dy: &f64| {
+            let (x, y) = (inside(x as f64 + dx, image.width()), inside(y as f64 + dy, image.height()));
+            image.sample(kurbo::Point::new(x, y))
+        };
+        let sum: f32 = spots.iter().flat_map(|dy| spots.iter().map(move |dx| at(dx, dy))).sum();
+        sum / (samples * samples) as f32
+    })
 }
 
 /// Now and then a page has what is usual on others.
@@ -79,13 +107,13 @@ fn mixed(rng: &mut impl Rng, recipe: &mut Recipe) {
 }
 
 /// What is on the sheet before anything is drawn.
-fn below(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe, (ground, contrast): (Rgb, f32), other: &Drawing) {
-    let dark = brightness(ground) < 0.4;
+fn below(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe, (ground, pens): (Rgb, &[Pen]), other: &Drawing) {
+    let (dark, contrast) = (brightness(ground) < 0.4, faintest(pens, ground));
     if rng.random_bool(recipe.tints) {
-        print::tints(rng, canvas, if dark { DEEP } else { TINTS });
+        print::tints(rng, canvas, if dark { DEEP } else { TINTS }, contrast);
     }
     if rng.random_bool(recipe.ruling) {
-        rule(rng, canvas, dark, contrast);
+        rule(rng, canvas, (dark, contrast), pens);
     }
     let (ghost, wiped) = (rng.random_bool(recipe.ghost), rng.random_bool(recipe.wiped));
     if ghost || wiped {
@@ -117,7 +145,7 @@ const DEEP: &[Rgb] = &[[0.5; 3], [0.4, 0.6, 0.8], [0.8, 0.5, 0.4]];
 const GHOSTS: &[Rgb] = &[[0.1; 3], [0.3, 0.3, 0.35], [0.15, 0.25, 0.6], [0.7, 0.2, 0.2], [0.2, 0.5, 0.3]];
 
 /// Rules the sheet in a colour of its own, or in that of a pen but weaker.
-fn rule(rng: &mut impl Rng, canvas: &mut Canvas, dark: bool, contrast: f32) {
+fn rule(rng: &mut impl Rng, canvas: &mut Canvas, (dark, contrast): (bool, f32), pens: &[Pen]) {
     const RULES: &[Rgb] = &[
         [0.35, 0.55, 0.85],
         [0.45, 0.65, 0.9],
@@ -133,7 +161,11 @@ fn rule(rng: &mut impl Rng, canvas: &mut Canvas, dark: bool, contrast: f32) {
     let (color, most) = match (dark, gray) {
         (true, _) => ([0.9; 3], 0.6 * f64::from(contrast)),
         (_, true) => ([0.3; 3], 0.6 * f64::from(contrast)),
-        _ => (like(rng, RULES, 0.06), 1.0),
+        _ => {
+            let color = like(rng, RULES, 0.06);
+            let alike = pens.iter().any(|pen| apart(pen.color(), color) < 0.4);
+            (color, if alike { 0.6 * f64::from(contrast) } else { 1.0 })
+        }
     };
     let strength = spread(rng, 0.06, 1.0) * most;
     canvas.cover(&lines, color, strength as f32);
@@ -184,18 +216,22 @@ fn draw(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe, content: &Cont
     }
 }
 
-/// What comes to lie over the marks.
-fn above(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe, content: &mut Content) {
+/// What comes to lie over the marks; gives how much of each pixel still shows them.
+fn above(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe) -> Raster<f32> {
     if rng.random_bool(recipe.highlight) {
         print::highlight(rng, canvas);
     }
     worn(rng, canvas, recipe, 0.6);
+    let (width, height) = canvas.size();
+    let mut kept = Raster::filled(width, height, 1.0);
+    let mut keep = |part: Raster<f32>| kept.data_mut().iter_mut().zip(part.data()).for_each(|(k, p)| *k *= p);
     if rng.random_bool(recipe.objects) {
-        content.keep(&objects::object(rng, canvas));
+        keep(objects::object(rng, canvas));
     }
     if rng.random_bool(recipe.edge) {
-        content.keep(&objects::edge(rng, canvas));
+        keep(objects::edge(rng, canvas));
     }
+    kept
 }
 
 fn lit(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe) {
@@ -217,9 +253,10 @@ fn lit(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe) {
 
 /// From what lies there to an image; faint marks get the less noise.
 fn reproduced(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe, contrast: f32) {
-    let noise = amount(rng, recipe.noise) * (3.0 * contrast).min(1.0);
+    let noise = if recipe.noise.0 > 0.0 { spread(rng, recipe.noise.0, recipe.noise.1) as f32 } else { 0.0 };
+    let noise = noise * (3.0 * contrast).min(1.0);
     if rng.random_bool(recipe.copier) {
-        copier::copied(rng, canvas);
+        copier::copied(rng, canvas, contrast);
     }
     canvas.blur(within(rng, recipe.blur.0, recipe.blur.1));
     if rng.random_bool(recipe.motion) {
@@ -239,7 +276,7 @@ fn reproduced(rng: &mut impl Rng, canvas: &mut Canvas, recipe: &Recipe, contrast
         return;
     }
     if rng.random_bool(recipe.clip) {
-        camera::clip(rng, canvas);
+        camera::clip(rng, canvas, contrast);
     }
     if rng.random_bool(recipe.gray) {
         canvas.fade(1.0);

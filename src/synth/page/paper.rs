@@ -8,30 +8,35 @@ use crate::raster::Raster;
 use kurbo::Vec2;
 use rand::Rng;
 
-/// A sheet of a colour with its fibres, grain and blotches.
-pub(super) fn sheet(rng: &mut impl Rng, (width, height): (usize, usize), color: Rgb, rough: f64) -> Canvas {
+/// A sheet of a colour with its fibres, grain and blotches: how likely they are, and how strong of 1.
+pub(super) fn sheet(
+    rng: &mut impl Rng,
+    (width, height): (usize, usize),
+    color: Rgb,
+    (rough, strength): (f64, f32),
+) -> Canvas {
     let mut canvas = Canvas::filled((width, height), color);
     if rng.random_bool(rough) {
         let grain = blur(&white(rng, width, height), within(rng, 0.4, 2.2));
-        let depth = spread(rng, 0.01, 0.12) as f32;
+        let depth = spread(rng, 0.01, 0.12) as f32 * strength;
         canvas.add(&grain, [depth; 3]);
     }
     if rng.random_bool(0.7 * rough) {
         let cell = spread(rng, 3.0, 40.0);
         let blotches = smooth(rng, width, height, cell);
-        let depth = spread(rng, 0.008, 0.09);
+        let depth = spread(rng, 0.008, 0.09) * f64::from(strength);
         canvas.add(&blotches, near(rng, [depth as f32; 3], 0.2 * depth));
     }
     if rng.random_bool(0.3 * rough) {
-        fibres(rng, &mut canvas);
+        fibres(rng, &mut canvas, strength);
     }
     canvas
 }
 
 /// Short curved hairs of pulp, paler and darker than the sheet.
-fn fibres(rng: &mut impl Rng, canvas: &mut Canvas) {
+fn fibres(rng: &mut impl Rng, canvas: &mut Canvas, strength: f32) {
     let size = canvas.size();
-    let depth = spread(rng, 0.03, 0.25) as f32;
+    let depth = spread(rng, 0.03, 0.25) as f32 * strength;
     for color in [[0.25, 0.2, 0.15], [1.0; 3]] {
         let mut marks = Raster::filled(size.0, size.1, 0.0);
         for _ in 0..rng.random_range(2..40) {

@@ -2,7 +2,7 @@
 
 use super::super::noise::{blur, smooth, white};
 use super::super::shapes::within;
-use super::canvas::{Canvas, Rgb, brightness};
+use super::canvas::{Canvas, Rgb, apart, brightness};
 use super::random::{amount, like, pick, spread};
 use crate::raster::Raster;
 use rand::Rng;
@@ -63,8 +63,9 @@ const PALE: [Rgb; 6] = [
     [0.98, 0.65, 0.7],
 ];
 
-/// Least difference from the ground of anything that counts as a mark, of 1.
-const VISIBLE: f32 = 0.1;
+/// Least difference from the ground of faint marks, such as those of hard pencils, and of any others, of 1.
+const FAINT: f32 = 0.1;
+const VISIBLE: f32 = 0.22;
 
 impl Pen {
     /// A pen of one of some media, which can be seen on a ground.
@@ -86,20 +87,18 @@ impl Pen {
             _ => amount(rng, strength),
         };
         let mut pen = Self { medium, color, strength };
-        let seen = pen.contrast(ground);
-        if seen < VISIBLE {
+        let least = if matches!(medium, Medium::Pencil | Medium::Crayon) { FAINT } else { VISIBLE };
+        if pen.contrast(ground) < least {
             // Darker, or paler on a dark ground, and as strong as it takes.
             pen.color = if brightness(ground) > 0.4 { [0.1; 3] } else { [0.95; 3] };
-            pen.strength = pen.strength.max(2.0 * VISIBLE);
+            pen.strength = pen.strength.max(2.0 * least);
         }
         pen
     }
 
     /// How far full marks are from a ground, at most 1.
     pub fn contrast(&self, ground: Rgb) -> f32 {
-        let apart = [0, 1, 2].map(|c| (self.color[c] - ground[c]).abs());
-        let largest = apart.into_iter().fold(0.0, f32::max);
-        self.strength * (0.5 * largest + 0.5 * (brightness(self.color) - brightness(ground)).abs())
+        self.strength * (0.5 * apart(self.color, ground) + 0.5 * (brightness(self.color) - brightness(ground)).abs())
     }
 
     pub fn color(&self) -> Rgb {

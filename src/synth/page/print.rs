@@ -2,7 +2,7 @@
 
 use super::super::noise::blur;
 use super::super::shapes::{blob, heading, polygon, rectangle, within};
-use super::canvas::{Canvas, Rgb};
+use super::canvas::{Canvas, Rgb, brightness};
 use super::random::{amount, clouds, like, place, spread};
 use crate::drawing::{Centreline, Color, Drawing, Fill, Stroke};
 use crate::raster::Raster;
@@ -35,8 +35,8 @@ pub(super) fn screened(rng: &mut impl Rng, tone: &Raster<f32>) -> Raster<f32> {
     Raster::from_vec(tone.width(), tone.height(), data.collect()).expect("as many as before")
 }
 
-/// Flat shapes of a tint under the drawing.
-pub(super) fn tints(rng: &mut impl Rng, canvas: &mut Canvas, colors: &[Rgb]) {
+/// Flat shapes of a tint under the drawing, none of which is as dark as marks of a contrast, which might be solids.
+pub(super) fn tints(rng: &mut impl Rng, canvas: &mut Canvas, colors: &[Rgb], contrast: f32) {
     let (width, _) = canvas.size();
     for _ in 0..rng.random_range(1..5) {
         let (p, angle) = (place(rng, width as f64, 0.1), heading(rng));
@@ -54,7 +54,8 @@ pub(super) fn tints(rng: &mut impl Rng, canvas: &mut Canvas, colors: &[Rgb]) {
             area.data_mut().iter_mut().zip(uneven.data()).for_each(|(a, u)| *a *= 0.8 + 0.2 * u);
         }
         let color = like(rng, colors, 0.08);
-        let strength = amount(rng, (0.1, 0.85));
+        let most = 0.6 * contrast / (1.0 - brightness(color)).max(0.1);
+        let strength = amount(rng, (0.1, 0.9)).min(most);
         canvas.stain(&area, color, strength);
     }
 }

@@ -1,6 +1,7 @@
 //! Training of the network that sees ink on pages.
 
 mod loss;
+mod pages;
 mod pictures;
 mod sample;
 #[cfg(test)]
@@ -8,5 +9,6 @@ mod tests;
 mod validate;
 
 pub(super) use loss::InkLoss;
+pub(super) use pages::Stored;
 pub(super) use sample::crops;
 pub use validate::{InkError, InkValidation, InkValidator};

@@ -9,7 +9,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// Pages side by side.
-const COLUMNS: usize = 6;
+const COLUMNS: usize = 12;
 /// Pixels between panels.
 const GAP: usize = 4;
 /// A background that no page has.

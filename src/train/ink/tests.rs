@@ -71,6 +71,28 @@ fn the_loss_is_least_for_the_truth() {
 }
 
 #[test]
+fn pages_of_ones_own_are_mixed_in() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, side: u32, level: u8| {
+        image::GrayImage::from_pixel(side, side, image::Luma([level])).save(dir.path().join(name)).unwrap();
+    };
+    write("page.png", 40, 51);
+    write("page.ink.png", 40, 153);
+    write("alone.png", 40, 51);
+    write("small.png", 20, 51);
+    let config = TrainConfig { pages: Some(dir.path().into()), page_share: 1.0, ..tiny() };
+    let (source, skipped) = config.source().unwrap();
+    let names: Vec<_> = skipped.iter().map(|(p, _)| p.file_name().unwrap().to_str().unwrap()).collect();
+    assert_eq!(names, ["alone.png", "small.png"]);
+    let sample = batch(&config, &source, 0);
+    assert!(
+        sample.input.iter().all(|v| (v + 0.3).abs() < 1e-3) && sample.target.iter().all(|v| (v - 0.4).abs() < 1e-3)
+    );
+    let turned = TrainConfig { turns: true, ..config };
+    assert_eq!(batch(&turned, &source, 0).target, sample.target);
+}
+
+#[test]
 fn kinds_can_be_held_out() {
     use crate::synth::Kind;
     use rand::SeedableRng;

@@ -199,6 +199,10 @@ pub(crate) struct TrainArgs {
     /// Mix in the strokes of the SVGs in a folder
     #[arg(long, value_name = "DIR")]
     pub(crate) svgs: Option<PathBuf>,
+    /// Mix in the pages of a folder where ink is trained: NAME.png with its ink, black on white, in NAME.ink.png or
+    /// as the strokes and solids of NAME.svg
+    #[arg(long, value_name = "DIR")]
+    pub(crate) pages: Option<PathBuf>,
     /// Steps in all
     #[arg(long, value_name = "N")]
     pub(crate) steps: Option<usize>,
