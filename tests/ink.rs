@@ -3,7 +3,8 @@
 mod common;
 
 use common::compare::strokes_apart;
-use common::draw::{Paper, line, on_paper, polyline, scan, sheet};
+use common::draw::{line, on_paper, polyline, scan, sheet};
+use common::paper::Paper;
 use fieldtrace::Error;
 use fieldtrace::drawing::Drawing;
 use fieldtrace::hooks::Observer;
