@@ -18,8 +18,11 @@ use crate::load::Scan;
 use crate::raster::Raster;
 use image::{Rgb, RgbImage};
 
-/// Ink of less coverage than this is none: a network's output on paper is not quite 0.
-const LEAST: f32 = 0.1;
+/// What is covered by less than this is paper: a network's output there is not quite 0.
+const PAPER: f32 = 0.1;
+/// What is covered by less than the first is no ink, and all from the second on is: ruling and the rims of stains lie below.
+/// Empirical.
+const INK: [f32; 2] = [0.6, 0.9];
 /// How far the blurred edge of a line reaches beyond the pixels that are known to be ink, in pixels.
 const EDGE: i64 = 2;
 /// Coverage from which a pixel tells whether ink is lighter than its paper.
@@ -53,10 +56,10 @@ pub fn drawn(scan: &Scan, coverage: &Raster<f32>) -> Result<Scan> {
         return Err(Error::InkSize { ink, page });
     }
     let near = widened(coverage, EDGE);
-    let paper = paper::filled(page, |x, y| color(scan, x, y), &near.mapped(0.0, |c| f32::from(u8::from(c < LEAST))));
+    let paper = paper::filled(page, |x, y| color(scan, x, y), &near.mapped(0.0, |c| f32::from(u8::from(c < PAPER))));
     let is_light = is_lighter(scan, coverage, &paper);
     let ink = |x: usize, y: usize| {
-        let gate = ((near[(x, y)] - LEAST) / (0.5 - LEAST)).clamp(0.0, 1.0);
+        let gate = ((near[(x, y)] - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0);
         let (seen, paper) = (color(scan, x, y), paper[(x, y)]);
         [0, 1, 2].map(|c| gate * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) })
     };
