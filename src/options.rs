@@ -15,7 +15,8 @@ pub enum Threshold {
 /// How the ink of the drawing is told from everything else on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Ink {
-    /// As with [`Ink::Threshold`] on a clean render, whose paper has nothing else on it; else as with [`Ink::Learned`].
+    /// As with [`Ink::Threshold`] on a clean render, whose paper has nothing else on it, and where both tell the same ink; else
+    /// as with [`Ink::Learned`].
     #[default]
     Auto,
     /// By a network that has seen shadows, stains, ruled paper, grain and much else that is not ink.

@@ -119,7 +119,11 @@ impl Vectorizer {
         observer: &mut dyn Observer,
     ) -> Result<LineImage> {
         let mut image = match coverage {
-            Some(coverage) => self.told(scan, coverage.clone(), observer)?,
+            Some(coverage) => {
+                let mut coverage = coverage.clone();
+                observer.on_ink(scan, &mut coverage)?;
+                self.told(scan, &coverage, &observer.cancel())?
+            }
             None => self.cleaned(scan, observer)?,
         };
         observer.on_line_image(&mut image)?;
@@ -140,14 +144,21 @@ impl Vectorizer {
                 return Ok(image);
             }
         }
-        self.told(scan, self.ink.estimate_until(scan, &cancel)?, observer)
+        let mut coverage = self.ink.estimate_until(scan, &cancel)?;
+        observer.on_ink(scan, &mut coverage)?;
+        if self.options.ink == Ink::Auto {
+            let image = as_it_is()?;
+            if ink::agree(&image, &coverage) {
+                return Ok(image);
+            }
+        }
+        self.told(scan, &coverage, &cancel)
     }
 
     /// The lines of a scan whose ink is known.
-    fn told(&self, scan: &Scan, mut coverage: Raster<f32>, observer: &mut dyn Observer) -> Result<LineImage> {
-        observer.on_ink(scan, &mut coverage)?;
-        let drawn = ink::drawn(scan, &coverage)?;
-        clean::clean_drawn(&drawn, scan, &self.options, &observer.cancel())
+    fn told(&self, scan: &Scan, coverage: &Raster<f32>, cancel: &Cancel) -> Result<LineImage> {
+        let drawn = ink::drawn(scan, coverage)?;
+        clean::clean_drawn(&drawn, scan, &self.options, cancel)
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected.

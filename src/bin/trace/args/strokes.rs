@@ -12,7 +12,8 @@ pub(crate) struct CleanArgs {
     #[arg(long, value_name = "KIND")]
     preset: Option<Preset>,
     /// How ink is told from what else is on the page: `learned` by a network that has seen shadows, stains and ruled paper,
-    /// `threshold` by darkness alone, `auto` by the network except on a clean render [default: auto]
+    /// `threshold` by darkness alone, `auto` by the network except where both tell the same ink
+    /// [default: auto]
     #[arg(long, value_name = "HOW", value_parser = parse_ink)]
     ink: Option<Ink>,
     /// Darkness from which a pixel is ink: `auto`, or between 0 (paper) and 1 (black) [default: auto]
