@@ -11,8 +11,8 @@ const SURE: f32 = 0.9;
 /// How far the rims of the same ink may lie apart, in pixels of the page.
 const APART: i64 = 2;
 /// The most of one's ink that the other may take for none, as a share of it: of gentle scans it is nothing, and of pages with
-/// shadows, stains or ruling more than twice as much.
-const MOST: f64 = 0.02;
+/// shadows, stains or ruling more.
+const MOST: f64 = 0.002;
 
 /// Whether the ink of a cleaned page, lines and solid regions, is that of a coverage, which has the size of the page.
 pub(crate) fn agree(image: &LineImage, coverage: &Raster<f32>) -> bool {
