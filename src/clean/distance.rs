@@ -11,7 +11,7 @@ use rayon::prelude::*;
 ///
 /// The outside of the image counts as mask, so a line that leaves the image keeps its width. Where there is nothing
 /// but mask, all distances are the image's longer side.
-pub(super) fn distance(mask: &Mask) -> Raster<f32> {
+pub(crate) fn distance(mask: &Mask) -> Raster<f32> {
     let (width, height) = mask.size();
     if !mask.data().contains(&false) {
         return Raster::filled(width, height, width.max(height) as f32);

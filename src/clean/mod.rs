@@ -20,6 +20,7 @@ mod width;
 
 pub(crate) use blur::{profile_at, unblurred_width};
 pub(crate) use broad::RIM;
+pub(crate) use distance::distance;
 pub use line_image::{Decisions, LineImage};
 pub use noise::{Noise, NoiseMap};
 pub(crate) use page::JOINING;
@@ -31,7 +32,6 @@ use crate::error::Result;
 use crate::load::Scan;
 use crate::options::Options;
 use crate::raster::{Mask, Raster};
-use distance::distance;
 use imageproc::filter::gaussian_blur_f32;
 use page::Page;
 use rayon::prelude::*;

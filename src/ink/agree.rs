@@ -1,8 +1,8 @@
 //! Whether darkness alone tells the same ink as an estimator.
 
 use super::widened;
-use crate::clean::LineImage;
-use crate::raster::Raster;
+use crate::clean::{LineImage, distance};
+use crate::raster::{Mask, Raster};
 use kurbo::Point;
 
 /// Coverage below the first is no ink, and from the second on is sure to be.
@@ -14,28 +14,37 @@ const APART: i64 = 2;
 /// shadows, stains or ruling more.
 const MOST: f64 = 0.002;
 
+/// Ink deeper than this, in pixels of the page, is left out: a network may see no more of it than dark paper.
+const DEEP: f32 = 6.0;
+
 /// Whether the ink of a cleaned page, lines and solid regions, is that of a coverage, which has the size of the page.
 pub(crate) fn agree(image: &LineImage, coverage: &Raster<f32>) -> bool {
     let inked = in_page(image, coverage.size());
-    let (near_ink, near_coverage) = (widened(&inked, APART), widened(coverage, APART));
-    let share = |of: &Raster<f32>, least: f32, near: &Raster<f32>, none: f32| {
-        let own = of.data().iter().zip(near.data()).filter(|(own, _)| **own >= least);
-        let (all, stray) = own.fold((0usize, 0usize), |(all, stray), (_, n)| (all + 1, stray + usize::from(*n < none)));
-        stray as f64 / all.max(1) as f64
-    };
-    share(&inked, 0.5, &near_coverage, NO_INK) <= MOST && share(coverage, SURE, &near_ink, 0.5) <= MOST
+    let (depth, sure) = (distance(&inked), coverage.mapped(false, |c| c >= SURE));
+    let near_ink = widened(&inked.mapped(0.0, |inked| f32::from(u8::from(inked))), APART);
+    let near_coverage = widened(coverage, APART);
+    let rim = inked.data().iter().zip(depth.data()).map(|(inked, depth)| *inked && *depth <= DEEP);
+    let is_seen = near_coverage.data().iter().map(|c| *c >= NO_INK);
+    let is_told = near_ink.data().iter().map(|c| *c > 0.0);
+    missed(rim, is_seen) <= MOST && missed(sure.data().iter().copied(), is_told) <= MOST
 }
 
-/// Where a page has ink, 1, and where not, 0.
-fn in_page(image: &LineImage, (width, height): (usize, usize)) -> Raster<f32> {
+/// The share of some pixels that is not among others.
+fn missed(pixels: impl Iterator<Item = bool>, others: impl Iterator<Item = bool>) -> f64 {
+    let own = pixels.zip(others).filter(|(own, _)| *own);
+    let (all, missed) = own.fold((0usize, 0usize), |(all, missed), (_, other)| (all + 1, missed + usize::from(!other)));
+    missed as f64 / all.max(1) as f64
+}
+
+/// Where a page has ink.
+fn in_page(image: &LineImage, (width, height): (usize, usize)) -> Mask {
     let is_inked = |image: &LineImage, x: usize, y: usize| {
         let p = Point::new((x as f64 + 0.5) * image.scale, (y as f64 + 0.5) * image.scale);
         image.mask.at(p) == Some(true) || image.solid.at(p) == Some(true)
     };
-    Raster::from_rows(width, height, 0.0, |y, row| {
+    Raster::from_rows(width, height, false, |y, row| {
         for (x, to) in row.iter_mut().enumerate() {
-            let broad = image.broad.as_ref().is_some_and(|broad| is_inked(broad, x, y));
-            *to = f32::from(u8::from(broad || is_inked(image, x, y)));
+            *to = is_inked(image, x, y) || image.broad.as_ref().is_some_and(|broad| is_inked(broad, x, y));
         }
     })
 }
