@@ -14,19 +14,21 @@ const APART: i64 = 2;
 /// shadows, stains or ruling more.
 const MOST: f64 = 0.002;
 
-/// Ink deeper than this, in pixels of the page, is left out: a network may see no more of it than dark paper.
-const DEEP: f32 = 6.0;
+/// Ink that is deeper than this somewhere, in pixels of the page, is left out with its rim: half of the broadest pen that the
+/// network was trained on. Of broader ones it may see no more than dark paper.
+const DEEP: f32 = 4.0;
 
 /// Whether the ink of a cleaned page, lines and solid regions, is that of a coverage, which has the size of the page.
 pub(crate) fn agree(image: &LineImage, coverage: &Raster<f32>) -> bool {
     let inked = in_page(image, coverage.size());
-    let (depth, sure) = (distance(&inked), coverage.mapped(false, |c| c >= SURE));
+    let to_deep = distance(&distance(&inked).mapped(true, |depth| depth <= DEEP));
+    let sure = coverage.mapped(false, |c| c >= SURE);
     let near_ink = widened(&inked.mapped(0.0, |inked| f32::from(u8::from(inked))), APART);
     let near_coverage = widened(coverage, APART);
-    let rim = inked.data().iter().zip(depth.data()).map(|(inked, depth)| *inked && *depth <= DEEP);
+    let known = inked.data().iter().zip(to_deep.data()).map(|(inked, d)| *inked && *d > 1.5 * DEEP);
     let is_seen = near_coverage.data().iter().map(|c| *c >= NO_INK);
     let is_told = near_ink.data().iter().map(|c| *c > 0.0);
-    missed(rim, is_seen) <= MOST && missed(sure.data().iter().copied(), is_told) <= MOST
+    missed(known, is_seen) <= MOST && missed(sure.data().iter().copied(), is_told) <= MOST
 }
 
 /// The share of some pixels that is not among others.
