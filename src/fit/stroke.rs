@@ -15,7 +15,7 @@ const LEAST_TURN: f64 = 0.38;
 
 /// Lines that end at a corner are led to where they cross, up to a line width from its node; where they run together in a
 /// spike, up to this share of a line width over the sine of half their angle.
-const SPIKE: f64 = 0.25;
+const SPIKE: f64 = 0.12;
 
 /// Lines cross clearly where the sine of their angle is more than this (9 degrees).
 const LEAST_SINE: f64 = 0.15;

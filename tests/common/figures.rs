@@ -1,12 +1,13 @@
 //! Sweeps over figures: each is drawn, traced and compared with what was drawn.
 
 use super::compare::{apart, bow, ends_of};
-use super::draw::{scan, trace};
+use super::draw::{scan, trace_under};
 use super::sheet::{self, Figure};
 use super::sweep::{ensure, report, require};
 use fieldtrace::drawing::{Drawing, Stroke};
 use fieldtrace::load::Scan;
 use fieldtrace::metrics::nodes;
+use fieldtrace::options::{Ink, Options};
 use kurbo::Point;
 use rayon::prelude::*;
 use std::fmt::Debug;
@@ -24,7 +25,8 @@ pub fn figures<C: Debug + Sync>(
     figures_on(name, floor, cases, draw, |_, drawing| scan(drawing), rule);
 }
 
-/// The same on scans of one's own.
+/// The same on scans of one's own. They are about what becomes of the ink, which is told by darkness alone: what a network
+/// makes of a page is for `tests/ink.rs`.
 #[track_caller]
 pub fn figures_on<C: Debug + Sync>(
     name: &str,
@@ -36,7 +38,8 @@ pub fn figures_on<C: Debug + Sync>(
 ) {
     let figure = |case: &C| {
         let truth = draw(case);
-        let traced = trace(&scan(case, &truth));
+        let options = Options { ink: Ink::Threshold, ..Options::default() };
+        let traced = trace_under(options, &scan(case, &truth));
         let fault = rule(case, &truth, &traced).err();
         Figure { label: format!("{case:?}"), truth, traced, fault }
     };
