@@ -37,7 +37,7 @@ impl Vectorizer {
     /// [`Error::Option`] when an option is out of its range.
     pub fn with(options: Options, estimator: Box<dyn FieldEstimator>) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, ink: Box::new(LearnedInk::built_in()?), estimator, passes: Passes::default() })
+        Ok(Self { options, ink: Box::new(LearnedInk::default()), estimator, passes: Passes::default() })
     }
 
     /// The same with a source of ink, which is asked for that of every page: [`Options::ink`] becomes [`Ink::Learned`].
@@ -134,25 +134,21 @@ impl Vectorizer {
     /// The lines of a scan whose ink is told as the options say.
     fn cleaned(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<LineImage> {
         let cancel = observer.cancel();
-        let as_it_is = || clean::clean_until(scan, &self.options, &cancel);
-        if self.options.ink == Ink::Threshold {
-            return as_it_is();
-        }
-        if self.options.ink == Ink::Auto && ink::is_plain(scan) {
-            let image = as_it_is()?;
-            if image.noise.is_sure() {
-                return Ok(image);
-            }
-        }
+        let by_threshold = match self.options.ink {
+            Ink::Learned => None,
+            Ink::Auto | Ink::Threshold => Some(clean::clean_until(scan, &self.options, &cancel)?),
+        };
+        let is_render = |image: &LineImage| image.noise.is_sure() && ink::is_plain(scan);
+        let by_threshold = match by_threshold {
+            Some(image) if self.options.ink == Ink::Threshold || is_render(&image) => return Ok(image),
+            other => other,
+        };
         let mut coverage = self.ink.estimate_until(scan, &cancel)?;
         observer.on_ink(scan, &mut coverage)?;
-        if self.options.ink == Ink::Auto {
-            let image = as_it_is()?;
-            if ink::agree(&image, &coverage) {
-                return Ok(image);
-            }
+        match by_threshold {
+            Some(image) if ink::agree(&image, &coverage) => Ok(image),
+            _ => self.told(scan, &coverage, &cancel),
         }
-        self.told(scan, &coverage, &cancel)
     }
 
     /// The lines of a scan whose ink is known.

@@ -179,6 +179,14 @@ impl Mask {
     }
 }
 
+/// The cells before and after a pixel's centre, of `count` cells of so many pixels a side, and how far it lies between their
+/// centres.
+pub(crate) fn between(pixel: usize, cell: usize, count: usize) -> (usize, usize, f32) {
+    let place = ((pixel as f32 + 0.5) / cell as f32 - 0.5).clamp(0.0, (count - 1) as f32);
+    let before = place as usize;
+    (before, (before + 1).min(count - 1), place - before as f32)
+}
+
 /// The greatest whole number that is not above; without the call that rounding down costs where the processor is not
 /// known to have an instruction for it.
 pub(crate) fn floor(v: f64) -> i64 {

@@ -144,7 +144,7 @@ fn the_network_tells_ink_from_a_shadow_and_squares() {
 #[test]
 fn the_ink_is_the_same_on_any_number_of_threads_and_in_any_size() {
     let page = on_paper(&figure(), Paper::PENCIL, 3);
-    let ink = LearnedInk::built_in().unwrap();
+    let ink = LearnedInk::default();
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| ink.estimate(&page).unwrap())

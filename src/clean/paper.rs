@@ -1,7 +1,7 @@
 //! The lightness of the paper, which uneven light makes a smooth function of place.
 
 use super::smooth;
-use crate::raster::Raster;
+use crate::raster::{Raster, between};
 
 /// Side of the cells in which paper is measured, in pixels: several line widths, so that most of a cell is paper.
 const CELL: usize = 16;
@@ -78,23 +78,16 @@ pub(super) fn divide(light: &Raster<f32>, paper: &Paper) -> Raster<f32> {
     // Bilinear: along the rows of the grid first.
     let rows = Raster::from_rows(light.width(), grid.height(), 0.0, |cell, row| {
         for (x, level) in row.iter_mut().enumerate() {
-            let (i, next, t) = between(x, grid.width());
+            let (i, next, t) = between(x, CELL, grid.width());
             *level = mix(grid[(i, cell)], grid[(next, cell)], t);
         }
     });
     Raster::from_rows(light.width(), light.height(), 0.0, |y, row| {
-        let (i, next, t) = between(y, grid.height());
+        let (i, next, t) = between(y, CELL, grid.height());
         for ((ink, &g), (&a, &b)) in row.iter_mut().zip(light.row(y)).zip(rows.row(i).iter().zip(rows.row(next))) {
             *ink = (1.0 - g / mix(a, b, t).max(1e-3)).clamp(0.0, 1.0);
         }
     })
-}
-
-/// The cells before and after a pixel's centre, of so many, and how far it lies between their centres.
-fn between(pixel: usize, cells: usize) -> (usize, usize, f32) {
-    let place = ((pixel as f32 + 0.5) / CELL as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
-    let cell = place as usize;
-    (cell, (cell + 1).min(cells - 1), place - cell as f32)
 }
 
 fn mix(a: f32, b: f32, t: f32) -> f32 {

@@ -102,10 +102,10 @@ impl<'a> Chain<'a> {
     /// Whether some segment leads where there are no points, of its own piece or of those beside it.
     fn is_astray(&self) -> bool {
         let least = (ASTRAY * self.tolerance.width).powi(2);
-        (0..self.drafts.len()).any(|k| {
-            let courses = self.around(k).map(|i| self.course(i)).collect::<Vec<_>>();
+        let courses: Vec<Vec<Point>> = self.drafts.iter().map(|draft| self.course(draft.piece)).collect();
+        (0..courses.len()).any(|k| {
             let off = |p: Point| {
-                let lines = courses.iter().flat_map(|course| course.windows(2));
+                let lines = self.around(k).flat_map(|i| courses[i].windows(2));
                 lines.map(|w| Line::new(w[0], w[1])).all(|line| line.nearest(p, 1e-6).distance_sq > least)
             };
             let places = |s: &Segment| (0..=LOOKED_AT).map(|t| s.eval(f64::from(t) / f64::from(LOOKED_AT))).collect();
@@ -122,8 +122,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Points of a piece, as many as tell enough.
-    fn course(&self, k: usize) -> Vec<Point> {
-        let Piece { from, to, .. } = self.drafts[k].piece;
+    fn course(&self, Piece { from, to, .. }: Piece) -> Vec<Point> {
         told(from, to).chain([to]).map(|k| self.samples.points[k]).collect()
     }
 

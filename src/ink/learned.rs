@@ -7,6 +7,7 @@ use crate::load::Scan;
 use crate::raster::Raster;
 use crate::unet::InkNet;
 use image::imageops::{FilterType, resize};
+use std::sync::OnceLock;
 
 /// The longer side of the page at a first look, in pixels.
 const FIRST_LOOK: f64 = 1100.0;
@@ -19,33 +20,31 @@ const ALIKE: f64 = 1.3;
 const PLACE: usize = 32;
 const LEAST_INK: f32 = 16.0;
 
-/// The ink network, shown a page at a size at which it knows the lines.
-#[derive(Clone, Debug)]
+/// The ink network, shown a page at a size at which it knows the lines. By default it is the one that the program carries,
+/// which is unpacked for the first page that asks for it.
+#[derive(Clone, Debug, Default)]
 pub struct LearnedInk {
-    network: InkNet,
+    network: OnceLock<InkNet>,
 }
 
 impl LearnedInk {
     /// With a network.
     pub fn new(network: InkNet) -> Self {
-        Self { network }
+        Self { network: network.into() }
     }
 
-    /// With the network that the program carries.
-    ///
-    /// # Errors
-    /// [`crate::Error::Weights`] never, unless the program was built around a broken file.
-    pub fn built_in() -> Result<Self> {
-        InkNet::built_in().map(Self::new)
+    fn network(&self) -> Result<&InkNet> {
+        if let Some(network) = self.network.get() {
+            return Ok(network);
+        }
+        let built_in = InkNet::built_in()?;
+        Ok(self.network.get_or_init(|| built_in))
     }
 
     /// The coverage of a page looked at by a factor of its size, at that size.
     fn look(&self, scan: &Scan, factor: f64, cancel: &Cancel) -> Result<Raster<f32>> {
-        if factor == 1.0 {
-            self.network.coverage(scan, cancel)
-        } else {
-            self.network.coverage(&smaller(scan, factor), cancel)
-        }
+        let network = self.network()?;
+        if factor == 1.0 { network.coverage(scan, cancel) } else { network.coverage(&smaller(scan, factor), cancel) }
     }
 }
 

@@ -53,29 +53,28 @@ pub trait InkEstimator: Send + Sync {
 /// # Errors
 /// [`Error::InkSize`] when the coverage is not of the scan's size.
 pub fn drawn(scan: &Scan, coverage: &Raster<f32>) -> Result<Scan> {
-    let (page, ink) = (scan.gray.size(), coverage.size());
-    if page != ink {
-        return Err(Error::InkSize { ink, page });
+    let page = scan.gray.size();
+    if coverage.size() != page {
+        return Err(Error::InkSize { ink: coverage.size(), page });
     }
     let near = widened(coverage, EDGE);
     let paper = paper::filled(page, |x, y| color(scan, x, y), &near.mapped(0.0, |c| f32::from(u8::from(c < PAPER))));
     let is_light = is_lighter(scan, coverage, &paper);
-    let ink = |x: usize, y: usize| {
-        let gate = ((near[(x, y)] - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0);
-        let (seen, paper) = (color(scan, x, y), paper[(x, y)]);
-        [0, 1, 2].map(|c| gate * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) })
-    };
-    let shade = |ink: f32| if is_light { ink } else { 1.0 - ink };
     let (width, height) = page;
+    let ink = Raster::from_rows(width, height, [0.0; 3], |y, row| {
+        for (x, to) in row.iter_mut().enumerate() {
+            let gate = ((near[(x, y)] - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0);
+            let (seen, paper) = (color(scan, x, y), paper[(x, y)]);
+            *to = [0, 1, 2].map(|c| gate * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) });
+        }
+    });
+    let shade = |ink: f32| if is_light { ink } else { 1.0 - ink };
     let rgb = scan.rgb.as_ref().map(|_| {
         RgbImage::from_fn(width as u32, height as u32, |x, y| {
-            Rgb(ink(x as usize, y as usize).map(|ink| (255.0 * shade(ink)).round() as u8))
+            Rgb(ink[(x as usize, y as usize)].map(|ink| (255.0 * shade(ink)).round() as u8))
         })
     });
-    let gray = Raster::from_rows(width, height, 0.0, |y, row| {
-        row.iter_mut().enumerate().for_each(|(x, to)| *to = shade(luma(ink(x, y))));
-    });
-    Ok(Scan { gray, rgb, dpi: scan.dpi })
+    Ok(Scan { gray: ink.mapped(0.0, |ink| shade(luma(ink))), rgb, dpi: scan.dpi })
 }
 
 /// The share of the paper's light that ink has taken.

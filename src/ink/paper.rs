@@ -1,6 +1,6 @@
 //! The paper under the ink: the colour that a page would have if nothing were drawn on it.
 
-use crate::raster::Raster;
+use crate::raster::{Raster, between};
 
 /// Samples that count as a whole one: where less is known, a coarser level helps.
 const ENOUGH: f32 = 1.0;
@@ -54,7 +54,7 @@ fn halved(level: &Known) -> Known {
 fn pulled(level: &Known, coarser: &Raster<[f32; 3]>) -> Raster<[f32; 3]> {
     let (columns, rows) = coarser.size();
     Raster::from_rows(level.width(), level.height(), [0.0; 3], |y, row| {
-        let (top, bottom, down) = between(y, rows);
+        let (top, bottom, down) = between(y, 2, rows);
         for (x, to) in row.iter_mut().enumerate() {
             let sum = level[(x, y)];
             let missing = (1.0 - sum[3]).max(0.0);
@@ -62,20 +62,13 @@ fn pulled(level: &Known, coarser: &Raster<[f32; 3]>) -> Raster<[f32; 3]> {
                 *to = over(sum, sum[3]);
                 continue;
             }
-            let (left, right, along) = between(x, columns);
+            let (left, right, along) = between(x, 2, columns);
             for (c, to) in to.iter_mut().enumerate() {
                 let mix = |y: usize| coarser[(left, y)][c] * (1.0 - along) + coarser[(right, y)][c] * along;
                 *to = sum[c] + missing * (mix(top) * (1.0 - down) + mix(bottom) * down);
             }
         }
     })
-}
-
-/// The pixels of a level of half the size before and after a pixel's centre, and how far it lies between their centres.
-fn between(pixel: usize, count: usize) -> (usize, usize, f32) {
-    let place = (0.5 * (pixel as f32 + 0.5) - 0.5).clamp(0.0, (count - 1) as f32);
-    let before = place as usize;
-    (before, (before + 1).min(count - 1), place - before as f32)
 }
 
 fn over([r, g, b, _]: [f32; 4], weight: f32) -> [f32; 3] {

@@ -13,9 +13,7 @@ use crate::hooks::Observer;
 use crate::load::Scan;
 use crate::raster::Raster;
 use crate::streamline::Streamline;
-use crate::write::write_file;
-use image::{DynamicImage, ImageFormat};
-use std::io::Cursor;
+use crate::write::{write_file, write_png};
 use std::path::{Path, PathBuf};
 
 /// Writes, where an estimator told the ink, `0-coverage.png`, then `1-ink.png` and, each as `.svg` and `.png`, `2-field`, `3-streamlines`, `4-graph` and
@@ -52,13 +50,6 @@ impl<'a> DebugDir<'a> {
         let layer = if self.has_broad && image.broad.is_none() { "-broad" } else { "" };
         self.write(&format!("4-{number:02}-{}{layer}", pass.name.replace(' ', "-")), svg)
     }
-}
-
-fn write_png(path: &Path, picture: &DynamicImage) -> Result<()> {
-    let mut png = Cursor::new(Vec::new());
-    let encoded = picture.write_to(&mut png, ImageFormat::Png);
-    encoded.map_err(|e| Error::Write { path: path.to_owned(), cause: std::io::Error::other(e) })?;
-    write_file(path, &png.into_inner())
 }
 
 impl Observer for DebugDir<'_> {

@@ -2,9 +2,9 @@
 //! the difference of the coefficients and the angular error.
 
 use super::validate::{Sheet, angles, coefficients};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::field::decode;
-use crate::write::write_file;
+use crate::write::write_png;
 use image::{ImageBuffer, Rgb, RgbImage};
 use kurbo::{Point, Vec2};
 use num_complex::Complex32;
@@ -23,7 +23,7 @@ const V_COLOR: [u8; 3] = [0, 80, 208];
 /// Draws sheets with their predictions, `[4, height, width]`, to a PNG.
 ///
 /// # Errors
-/// [`Error::Write`].
+/// [`crate::Error::Write`].
 pub fn draw(examples: &[(&Sheet, Vec<f32>)], out: &Path) -> Result<()> {
     let rows: Vec<[RgbImage; 5]> = examples.iter().map(|(sheet, field)| panels(sheet, field)).collect();
     let heights: Vec<usize> = rows.iter().map(|r| r[0].height() as usize + GAP).collect();
@@ -36,10 +36,7 @@ pub fn draw(examples: &[(&Sheet, Vec<f32>)], out: &Path) -> Result<()> {
         }
         y += height as i64;
     }
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let failed = |e| Error::Write { path: out.into(), cause: std::io::Error::other(e) };
-    whole.write_to(&mut bytes, image::ImageFormat::Png).map_err(failed)?;
-    write_file(out, &bytes.into_inner())
+    write_png(out, &whole.into())
 }
 
 fn panels(sheet: &Sheet, field: &[f32]) -> [RgbImage; 5] {

@@ -1,6 +1,7 @@
 //! Files that are either whole or not there.
 
 use crate::error::{Error, Result};
+use image::{DynamicImage, ImageFormat};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -23,6 +24,17 @@ const ABANDONED: Duration = Duration::from_secs(600);
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = if path.as_os_str() == "-" { to_stdout(bytes) } else { to_file(path, bytes) };
     written.map_err(|cause| Error::Write { path: path.to_owned(), cause })
+}
+
+/// The same with a picture, as PNG.
+///
+/// # Errors
+/// [`Error::Write`] with the path and the reason.
+pub fn write_png(path: &Path, picture: &DynamicImage) -> Result<()> {
+    let mut png = io::Cursor::new(Vec::new());
+    let encoded = picture.write_to(&mut png, ImageFormat::Png);
+    encoded.map_err(|e| Error::Write { path: path.to_owned(), cause: io::Error::other(e) })?;
+    write_file(path, &png.into_inner())
 }
 
 fn to_stdout(bytes: &[u8]) -> io::Result<()> {

@@ -11,7 +11,7 @@ mod order;
 mod path_data;
 mod svg;
 
-pub use file::{remove_abandoned, write_file};
+pub use file::{remove_abandoned, write_file, write_png};
 pub use order::{pen_order, pen_up_length};
 pub use svg::{SvgOptions, to_svg};
 

@@ -8,9 +8,7 @@ use fieldtrace::Error;
 use fieldtrace::ink::{InkEstimator, LearnedInk};
 use fieldtrace::inspect::coverage_picture;
 use fieldtrace::load::load;
-use fieldtrace::write::write_file;
-use image::ImageFormat;
-use std::io::Cursor;
+use fieldtrace::write::write_png;
 
 /// Reads one page and writes its ink.
 pub(crate) fn run(args: &InkArgs) -> Result<(), Failure> {
@@ -23,13 +21,10 @@ pub(crate) fn run(args: &InkArgs) -> Result<(), Failure> {
     let mut stages = Stages::start(args.talk.verbose);
     let scan = load(&args.input, &args.load.options()).map_err(failed)?.scan;
     stages.done("load", || format!("{} x {} pixels", scan.gray.width(), scan.gray.height()));
-    let coverage = LearnedInk::built_in().and_then(|ink| ink.estimate(&scan)).map_err(failed)?;
+    let coverage = LearnedInk::default().estimate(&scan).map_err(failed)?;
     let covered = coverage.data().iter().filter(|&&c| c > 0.5).count();
     stages.done("ink", || format!("{covered} pixels"));
-    let mut png = Cursor::new(Vec::new());
-    let encoded = coverage_picture(&coverage).write_to(&mut png, ImageFormat::Png);
-    encoded.map_err(|e| failed(Error::Write { path: args.output.clone(), cause: std::io::Error::other(e) }))?;
-    write_file(&args.output, &png.into_inner()).map_err(failed)?;
+    write_png(&args.output, &coverage_picture(&coverage)).map_err(failed)?;
     stages.done("write", || format!("a picture to {}", target::name(&args.output)));
     if covered == 0 && !args.talk.quiet {
         eprintln!("trace: {name}: warning: no ink was found");

@@ -1,11 +1,10 @@
 //! Pages with their ink and what a network sees, as a picture.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::raster::Raster;
 use crate::synth::Page;
-use crate::write::write_file;
-use image::{ImageBuffer, ImageFormat, Rgb, RgbImage};
-use std::io::Cursor;
+use crate::write::write_png;
+use image::{ImageBuffer, Rgb, RgbImage};
 use std::path::Path;
 
 /// Pages side by side.
@@ -18,7 +17,7 @@ const BETWEEN: Rgb<u8> = Rgb([180, 60, 180]);
 /// Draws pages, each over its true ink and, where there is one, the coverage that is seen, to a PNG.
 ///
 /// # Errors
-/// [`Error::Write`].
+/// [`crate::Error::Write`].
 pub fn draw(examples: &[(&Page, Option<Vec<f32>>)], out: &Path) -> Result<()> {
     let stacks: Vec<Vec<RgbImage>> = examples.iter().map(|(page, seen)| panels(page, seen.as_deref())).collect();
     let side = |of: &dyn Fn(&RgbImage) -> u32| stacks.iter().flatten().map(of).max().unwrap_or(0) as usize + GAP;
@@ -33,10 +32,7 @@ pub fn draw(examples: &[(&Page, Option<Vec<f32>>)], out: &Path) -> Result<()> {
             image::imageops::replace(&mut whole, panel, x as i64, (y + k * high) as i64);
         }
     }
-    let mut bytes = Cursor::new(Vec::new());
-    let failed = |e| Error::Write { path: out.into(), cause: std::io::Error::other(e) };
-    whole.write_to(&mut bytes, ImageFormat::Png).map_err(failed)?;
-    write_file(out, &bytes.into_inner())
+    write_png(out, &whole.into())
 }
 
 fn panels(page: &Page, seen: Option<&[f32]>) -> Vec<RgbImage> {
