@@ -146,7 +146,7 @@ impl Vectorizer {
         let mut coverage = self.ink.estimate_until(scan, &cancel)?;
         observer.on_ink(scan, &mut coverage)?;
         match by_threshold {
-            Some(image) if ink::agree(&image, &coverage) => Ok(image),
+            Some(image) if image.decisions.hues == 0 && ink::agree(&image, &coverage) => Ok(image),
             _ => self.told(scan, &coverage, &cancel),
         }
     }

@@ -5,11 +5,13 @@ use crate::clean::{LineImage, distance};
 use crate::raster::{Mask, Raster};
 use kurbo::Point;
 
-/// Coverage below the first is no ink, and from the second on is sure to be.
-const NO_INK: f32 = 0.3;
+/// Coverage from which ink is sure.
 const SURE: f32 = 0.9;
 /// How far the rims of the same ink may lie apart, in pixels of the page.
 const APART: i64 = 2;
+/// What is further from all ink that an estimator sees, in pixels of the page, is not the ink of a faint stretch in a line that
+/// it sees.
+const STRETCH: i64 = 6;
 /// The most of one's ink that the other may take for none, as a share of it: of gentle scans it is nothing, and of pages with
 /// shadows, stains or ruling more.
 const MOST: f64 = 0.002;
@@ -24,9 +26,9 @@ pub(crate) fn agree(image: &LineImage, coverage: &Raster<f32>) -> bool {
     let to_deep = distance(&distance(&inked).mapped(true, |depth| depth <= DEEP));
     let sure = coverage.mapped(false, |c| c >= SURE);
     let near_ink = widened(&inked.mapped(0.0, |inked| f32::from(u8::from(inked))), APART);
-    let near_coverage = widened(coverage, APART);
+    let near_coverage = widened(coverage, STRETCH);
     let known = inked.data().iter().zip(to_deep.data()).map(|(inked, d)| *inked && *d > 1.5 * DEEP);
-    let is_seen = near_coverage.data().iter().map(|c| *c >= NO_INK);
+    let is_seen = near_coverage.data().iter().map(|c| *c > 0.0);
     let is_told = near_ink.data().iter().map(|c| *c > 0.0);
     missed(known, is_seen) <= MOST && missed(sure.data().iter().copied(), is_told) <= MOST
 }

@@ -11,11 +11,16 @@ use std::sync::OnceLock;
 
 /// The longer side of the page at a first look, in pixels.
 const FIRST_LOOK: f64 = 1100.0;
-/// The width that lines are brought to on a page that has to be looked at smaller than it is, in pixels: well within what
-/// the network is trained on.
+/// The width of lines that the network knows best, in pixels.
 const LINE_WIDTH: f64 = 3.0;
-/// A second look is not worth it where its size would differ by less than this factor.
-const ALIKE: f64 = 1.3;
+/// Another look is not worth it where lines differ from that by less than this factor.
+const ALIKE: f64 = 1.25;
+/// The most that a page is enlarged, and the size to which it is enlarged at most, in pixels.
+const LARGEST: f64 = 2.0;
+const MOST_PIXELS: f64 = 6e6;
+/// What the network gives less than the first is no ink, and from the second on it is sure: ruling and the rims of stains lie
+/// below. Empirical.
+const INK: [f32; 2] = [0.6, 0.9];
 /// A place has lines where at least so many of its pixels are ink; places are squares of so many pixels a side.
 const PLACE: usize = 32;
 const LEAST_INK: f32 = 16.0;
@@ -44,7 +49,7 @@ impl LearnedInk {
     /// The coverage of a page looked at by a factor of its size, at that size.
     fn look(&self, scan: &Scan, factor: f64, cancel: &Cancel) -> Result<Raster<f32>> {
         let network = self.network()?;
-        if factor == 1.0 { network.coverage(scan, cancel) } else { network.coverage(&smaller(scan, factor), cancel) }
+        if factor == 1.0 { network.coverage(scan, cancel) } else { network.coverage(&scaled(scan, factor), cancel) }
     }
 }
 
@@ -53,17 +58,35 @@ impl InkEstimator for LearnedInk {
         self.estimate_until(scan, &Cancel::default())
     }
 
-    /// A large page is looked at as a whole first; how broad its lines then are says at what size they are known best.
+    /// A page is looked at as a whole first; how broad its lines then are says at what size they are known best. Of hairlines
+    /// the network sees little, and nothing says how much too fine they are: the page is enlarged until they are seen, and
+    /// what is ink at any of these sizes is ink.
     fn estimate_until(&self, scan: &Scan, cancel: &Cancel) -> Result<Raster<f32>> {
         let (width, height) = scan.gray.size();
+        let largest = (MOST_PIXELS / (width * height) as f64).sqrt().clamp(1.0, LARGEST);
         let first = (FIRST_LOOK / width.max(height) as f64).min(1.0);
-        let mut coverage = self.look(scan, first, cancel)?;
-        let second = line_width(&coverage).map_or(first, |seen| (first * LINE_WIDTH / seen).min(1.0));
-        if first < 1.0 && (second / first).ln().abs() > ALIKE.ln() {
-            coverage = self.look(scan, second, cancel)?;
+        let look = |factor| {
+            let coverage = self.look(scan, factor, cancel)?;
+            Ok((line_width(&coverage).unwrap_or(LINE_WIDTH), resized(sure(coverage), width, height)))
+        };
+        let (mut seen, mut ink) = look(first)?;
+        if first < 1.0 && seen > ALIKE * LINE_WIDTH {
+            return Ok(look(first * LINE_WIDTH / seen)?.1);
         }
-        Ok(resized(coverage, width, height))
+        let mut factor = first;
+        while ALIKE * seen < LINE_WIDTH && ALIKE * factor < largest {
+            factor = (2.0 * factor).min(largest);
+            let (closer, more) = look(factor)?;
+            seen = closer;
+            ink.data_mut().iter_mut().zip(more.data()).for_each(|(ink, more)| *ink = ink.max(*more));
+        }
+        Ok(ink)
     }
+}
+
+/// What is surely ink, 0 to 1, of what the network says of it.
+fn sure(coverage: Raster<f32>) -> Raster<f32> {
+    coverage.mapped(0.0, |c| ((c - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0))
 }
 
 /// Width of the lines of a coverage, in pixels: the median over its places; `None` where there is no ink.
@@ -89,8 +112,8 @@ fn line_width(coverage: &Raster<f32>) -> Option<f64> {
     (!widths.is_empty()).then(|| f64::from(*widths.select_nth_unstable_by(middle, f32::total_cmp).1))
 }
 
-/// A page at a factor of its size, each pixel the mean of those that it stands for.
-fn smaller(scan: &Scan, factor: f64) -> Scan {
+/// A page at a factor of its size; where that is smaller, each pixel is the mean of those that it stands for.
+fn scaled(scan: &Scan, factor: f64) -> Scan {
     let side = |n: usize| ((n as f64 * factor).round() as usize).max(1);
     let (width, height) = (side(scan.gray.width()), side(scan.gray.height()));
     let rgb = scan.rgb.as_ref().map(|rgb| resize(rgb, width as u32, height as u32, FilterType::Triangle));

@@ -20,11 +20,8 @@ use crate::load::Scan;
 use crate::raster::Raster;
 use image::{Rgb, RgbImage};
 
-/// What is covered by less than this is paper: a network's output there is not quite 0.
-const PAPER: f32 = 0.1;
-/// What is covered by less than the first is no ink, and all from the second on is: ruling and the rims of stains lie below.
-/// Empirical.
-const INK: [f32; 2] = [0.6, 0.9];
+/// A line is ink all through from this coverage on: a line one pixel wide that lies between two rows covers half of each.
+const WHOLE: f32 = 0.5;
 /// How far the blurred edge of a line reaches beyond the pixels that are known to be ink, in pixels.
 const EDGE: i64 = 2;
 /// Coverage from which a pixel tells whether ink is lighter than its paper.
@@ -58,12 +55,12 @@ pub fn drawn(scan: &Scan, coverage: &Raster<f32>) -> Result<Scan> {
         return Err(Error::InkSize { ink: coverage.size(), page });
     }
     let near = widened(coverage, EDGE);
-    let paper = paper::filled(page, |x, y| color(scan, x, y), &near.mapped(0.0, |c| f32::from(u8::from(c < PAPER))));
+    let paper = paper::filled(|x, y| color(scan, x, y), near.mapped(false, |c| c == 0.0));
     let is_light = is_lighter(scan, coverage, &paper);
     let (width, height) = page;
     let ink = Raster::from_rows(width, height, [0.0; 3], |y, row| {
         for (x, to) in row.iter_mut().enumerate() {
-            let gate = ((near[(x, y)] - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0);
+            let gate = (near[(x, y)] / WHOLE).min(1.0);
             let (seen, paper) = (color(scan, x, y), paper[(x, y)]);
             *to = [0, 1, 2].map(|c| gate * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) });
         }

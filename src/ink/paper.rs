@@ -1,78 +1,64 @@
 //! The paper under the ink: the colour that a page would have if nothing were drawn on it.
 
-use crate::raster::{Raster, between};
+use crate::raster::{Mask, Raster};
+use rayon::prelude::*;
 
-/// Samples that count as a whole one: where less is known, a coarser level helps.
-const ENOUGH: f32 = 1.0;
+/// What is not known of paper is the mean of what is known within so many pixels, so that the grain of one does not tell.
+const REACH: i64 = 2;
 
-/// Colour channels of a page, and how far each pixel is known, 0 to 1: premultiplied.
-type Known = Raster<[f32; 4]>;
+type Rgb = [f32; 3];
 
-/// Fills what is not known of a picture from what is known around it, from nearest places first (push and pull, Gortler et
-/// al. 1996, section 3.4.2): each level of a pyramid is half as large, and pixels that are not known take what the next
-/// coarser level says.
+/// Fills what is not known of a picture from its rims inwards, ring by ring, so that the paper on one side of a line tells
+/// nothing of that on its other side: a line may run along the edge of a tint.
 ///
-/// `color` and `known`, 0 to 1, are told for each column and row of a picture of `width x height`, which is not empty.
-pub(super) fn filled(
-    (width, height): (usize, usize),
-    color: impl Fn(usize, usize) -> [f32; 3] + Sync,
-    known: &Raster<f32>,
-) -> Raster<[f32; 3]> {
-    let finest = Raster::from_rows(width, height, [0.0; 4], |y, row| {
-        for (x, to) in row.iter_mut().enumerate() {
-            let (weight, [r, g, b]) = (known[(x, y)], color(x, y));
-            *to = [r * weight, g * weight, b * weight, weight];
-        }
+/// `color` is told for each column and row where `known`, which is of the picture's size. Where nothing is known at all, all
+/// is black.
+pub(super) fn filled(color: impl Fn(usize, usize) -> Rgb + Sync, mut known: Mask) -> Raster<Rgb> {
+    let (width, height) = known.size();
+    let mut paper = Raster::from_rows(width, height, [0.0; 3], |y, row| {
+        row.iter_mut().enumerate().filter(|(x, _)| known[(*x, y)]).for_each(|(x, to)| *to = color(x, y));
     });
-    let mut levels = vec![finest];
-    while let Some(last) = levels.last().filter(|last| last.width().max(last.height()) > 1) {
-        levels.push(halved(last));
-    }
-    let mut coarser = levels.pop().map(|top| top.mapped([0.0; 3], |sum| over(sum, sum[3])));
-    while let Some(level) = levels.pop() {
-        coarser = coarser.map(|coarser| pulled(&level, &coarser));
-    }
-    coarser.unwrap_or_else(|| Raster::zeroed(width, height))
-}
-
-/// The sums of squares of four pixels, which count as one where they tell enough.
-fn halved(level: &Known) -> Known {
-    Raster::from_rows(level.width().div_ceil(2), level.height().div_ceil(2), [0.0; 4], |y, row| {
-        for (x, to) in row.iter_mut().enumerate() {
-            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                if let Some(part) = level.get((2 * x + dx) as i64, (2 * y + dy) as i64) {
-                    to.iter_mut().zip(part).for_each(|(to, part)| *to += part);
-                }
-            }
-            let most = to[3].max(ENOUGH);
-            to.iter_mut().for_each(|to| *to *= ENOUGH / most);
+    let mut is_met = known.clone();
+    let all: Vec<(usize, usize)> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).collect();
+    let mut ring = beside(all.into_iter().filter(|&p| known[p]), &mut is_met);
+    while !ring.is_empty() {
+        let colors: Vec<Rgb> = ring.par_iter().map(|&p| mean_around(&paper, &known, p)).collect();
+        for (&p, color) in ring.iter().zip(colors) {
+            (paper[p], known[p]) = (color, true);
         }
-    })
+        ring = beside(ring.into_iter(), &mut is_met);
+    }
+    paper
 }
 
-/// A level with what it does not know from the coarser one, between whose pixels it is interpolated.
-fn pulled(level: &Known, coarser: &Raster<[f32; 3]>) -> Raster<[f32; 3]> {
-    let (columns, rows) = coarser.size();
-    Raster::from_rows(level.width(), level.height(), [0.0; 3], |y, row| {
-        let (top, bottom, down) = between(y, 2, rows);
-        for (x, to) in row.iter_mut().enumerate() {
-            let sum = level[(x, y)];
-            let missing = (1.0 - sum[3]).max(0.0);
-            if missing == 0.0 {
-                *to = over(sum, sum[3]);
-                continue;
-            }
-            let (left, right, along) = between(x, 2, columns);
-            for (c, to) in to.iter_mut().enumerate() {
-                let mix = |y: usize| coarser[(left, y)][c] * (1.0 - along) + coarser[(right, y)][c] * along;
-                *to = sum[c] + missing * (mix(top) * (1.0 - down) + mix(bottom) * down);
+/// The pixels beside some that were not met yet, which now are.
+fn beside(pixels: impl Iterator<Item = (usize, usize)>, is_met: &mut Mask) -> Vec<(usize, usize)> {
+    let mut new = Vec::new();
+    for (x, y) in pixels {
+        for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+            let (x, y) = (x as i64 + dx, y as i64 + dy);
+            if is_met.get(x, y) == Some(false) {
+                let p = (x as usize, y as usize);
+                is_met[p] = true;
+                new.push(p);
             }
         }
-    })
+    }
+    new
 }
 
-fn over([r, g, b, _]: [f32; 4], weight: f32) -> [f32; 3] {
-    if weight > 0.0 { [r / weight, g / weight, b / weight] } else { [0.0; 3] }
+/// The mean of what is known around a pixel beside which something is.
+fn mean_around(paper: &Raster<Rgb>, known: &Mask, (x, y): (usize, usize)) -> Rgb {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for (dx, dy) in (-REACH..=REACH).flat_map(|dy| (-REACH..=REACH).map(move |dx| (dx, dy))) {
+        let (x, y) = (x as i64 + dx, y as i64 + dy);
+        if known.get(x, y) == Some(true) {
+            let color = paper[(x as usize, y as usize)];
+            sum.iter_mut().zip(color).for_each(|(sum, c)| *sum += c);
+            count += 1.0;
+        }
+    }
+    sum.map(|sum| sum / count)
 }
 
 #[cfg(test)]
@@ -83,8 +69,7 @@ mod tests {
     fn a_slope_goes_on_under_what_is_not_known() {
         let slope = |x: usize, y: usize| [0.2 + 0.006 * x as f32, 0.9 - 0.004 * y as f32, 0.5];
         for width in [1, 2, 3, 7, 12] {
-            let known = Raster::from_fn(100, 71, |x, _| if (40..40 + width).contains(&x) { 0.0 } else { 1.0 });
-            let paper = filled((100, 71), slope, &known);
+            let paper = filled(slope, Raster::from_fn(100, 71, |x, _| !(40..40 + width).contains(&x)));
             for (y, x) in (0..71).flat_map(|y| (0..100).map(move |x| (y, x))) {
                 let off = paper[(x, y)].iter().zip(slope(x, y)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
                 assert!(off < 0.006 * width as f32, "{off} off at ({x}, {y}) of {width}");
@@ -94,10 +79,21 @@ mod tests {
 
     #[test]
     fn nothing_known_is_black_and_one_pixel_tells_all() {
-        let nothing = filled((5, 4), |_, _| [0.7; 3], &Raster::filled(5, 4, 0.0));
+        let nothing = filled(|_, _| [0.7; 3], Raster::filled(5, 4, false));
         assert!(nothing.data().iter().all(|color| *color == [0.0; 3]));
-        let one = Raster::from_fn(33, 9, |x, y| if (x, y) == (30, 2) { 1.0 } else { 0.0 });
-        let all = filled((33, 9), |_, _| [0.7; 3], &one);
+        let all = filled(|_, _| [0.7; 3], Raster::from_fn(33, 9, |x, y| (x, y) == (30, 2)));
         assert!(all.data().iter().all(|color| color.iter().all(|c| (c - 0.7).abs() < 1e-5)));
+    }
+
+    #[test]
+    fn each_side_of_a_line_keeps_its_own_paper() {
+        for width in [2, 5, 6] {
+            let tint = |x: usize, _: usize| if x < 40 { [1.0, 0.9, 0.5] } else { [1.0; 3] };
+            let paper = filled(tint, Raster::from_fn(80, 50, |x, _| !(40 - width..40 + width).contains(&x)));
+            for (y, x) in (0..50).flat_map(|y| (0..80).filter(|x| x.abs_diff(40) > 1).map(move |x| (y, x))) {
+                let off = paper[(x, y)].iter().zip(tint(x, y)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(off < 1e-5, "{off} off at ({x}, {y}) of {width}");
+            }
+        }
     }
 }

@@ -69,8 +69,8 @@ impl InkNet {
         };
         let parts: Vec<Vec<f32>> = tiles.par_iter().map_init(Scratch::default, run).collect::<Result<_>>()?;
         for (tile, part) in tiles.iter().zip(parts) {
-            for (y, row) in part.chunks_exact(tile.core.0).enumerate() {
-                let start = (tile.at.1 + y) * width + tile.at.0;
+            for (y, row) in part.chunks_exact(tile.across.kept).enumerate() {
+                let start = (tile.down.core + y) * width + tile.across.core;
                 out.data_mut()[start..start + row.len()].copy_from_slice(row);
             }
         }
@@ -79,13 +79,14 @@ impl InkNet {
 
     /// The log-odds in a tile's core, row by row.
     fn run(&self, scratch: &mut Scratch, tile: &Tile, page: &Scan) -> Vec<f32> {
-        let (columns, rows) = (tile.size.0 / self.config.multiple(), tile.size.1 / self.config.multiple());
+        let Tile { across, down } = tile;
+        let (columns, rows) = (across.size / self.config.multiple(), down.size / self.config.multiple());
         let cells = TileCells::new(columns, rows, vec![true; columns * rows]);
-        let (width, height) = tile.core;
+        let (width, height) = (across.kept, down.kept);
         let mut core = vec![0.0; width * height];
         self.engine.run(scratch, &tile.input(page), &cells, |x, y, [logit]| {
             // Pixels before the core become numbers beyond any size.
-            let (x, y) = (x.wrapping_sub(HALO), y.wrapping_sub(HALO));
+            let (x, y) = ((across.start + x).wrapping_sub(across.core), (down.start + y).wrapping_sub(down.core));
             if x < width && y < height {
                 core[y * width + x] = logit;
             }
@@ -96,32 +97,23 @@ impl InkNet {
 
 /// A part of a page with what lies around it.
 struct Tile {
-    /// Top left corner of the part that is kept.
-    at: (usize, usize),
-    /// Its width and height.
-    core: (usize, usize),
-    /// Width and height with the halo, multiples of what the network asks for.
-    size: (usize, usize),
+    across: Span,
+    down: Span,
 }
 
 impl Tile {
     /// The tiles of a page of a size.
     fn all((width, height): (usize, usize), multiple: usize) -> impl Iterator<Item = Self> {
-        let step = |n: usize| n.div_ceil(n.div_ceil(CORE).max(1)).max(1);
-        let (w, h) = (step(width), step(height));
-        let side = move |n: usize| (n + 2 * HALO).next_multiple_of(multiple);
-        let tile = move |x: usize, y: usize| {
-            let core = (w.min(width - x), h.min(height - y));
-            Self { at: (x, y), core, size: (side(w), side(h)) }
-        };
-        (0..height).step_by(h).flat_map(move |y| (0..width).step_by(w).map(move |x| tile(x, y)))
+        let columns: Vec<Span> = Span::all(width, multiple).collect();
+        Span::all(height, multiple)
+            .flat_map(move |down| columns.clone().into_iter().map(move |across| Self { across, down }))
     }
 
-    /// What the network is shown, `[3, height, width]`; beyond its edges the page is mirrored.
+    /// What the network is shown, `[3, height, width]`.
     fn input(&self, page: &Scan) -> Vec<f32> {
         let (width, height) = page.gray.size();
-        let xs: Vec<usize> = (0..self.size.0).map(|x| mirrored(self.at.0 + x, width)).collect();
-        let ys: Vec<usize> = (0..self.size.1).map(|y| mirrored(self.at.1 + y, height)).collect();
+        let xs: Vec<usize> = self.across.places(width).collect();
+        let ys: Vec<usize> = self.down.places(height).collect();
         let mut input = Vec::with_capacity(3 * xs.len() * ys.len());
         for channel in 0..3 {
             for &y in &ys {
@@ -135,11 +127,36 @@ impl Tile {
     }
 }
 
-/// The place in `0..n` that shows at a place which is counted from [`HALO`] before the first.
-fn mirrored(place: usize, n: usize) -> usize {
-    let place = if place < HALO { HALO - 1 - place } else { place - HALO };
-    let around = place % (2 * n);
-    if around < n { around } else { 2 * n - 1 - around }
+/// A tile along one side of a page. At the page's edges it ends, as the pages do that training shows.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    /// The first pixel of what the network is shown, and their number: a multiple of what it asks for.
+    start: usize,
+    size: usize,
+    /// The first pixel that is kept, and their number.
+    core: usize,
+    kept: usize,
+}
+
+impl Span {
+    /// The spans of a side of `n` pixels.
+    fn all(n: usize, multiple: usize) -> impl Iterator<Item = Self> {
+        let step = n.div_ceil(n.div_ceil(CORE).max(1)).max(1);
+        (0..n).step_by(step).map(move |core| {
+            let kept = step.min(n - core);
+            let (start, end) = (core.saturating_sub(HALO), (core + kept + HALO).min(n));
+            let size = (end - start).next_multiple_of(multiple);
+            Self { start: start.min(n.saturating_sub(size)), size, core, kept }
+        })
+    }
+
+    /// The pixels of a side of `n`; where they do not fill the span, the last are shown again, mirrored.
+    fn places(self, n: usize) -> impl Iterator<Item = usize> {
+        (self.start..self.start + self.size).map(move |place| {
+            let around = place % (2 * n);
+            if around < n { around } else { 2 * n - 1 - around }
+        })
+    }
 }
 
 #[cfg(test)]
@@ -147,9 +164,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_page_is_mirrored_at_its_edges() {
-        let seen: Vec<usize> = (HALO - 3..HALO + 8).map(|p| mirrored(p, 4)).collect();
-        assert_eq!(seen, [2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0]);
+    fn a_page_that_does_not_fill_its_tile_is_mirrored() {
+        let span = Span { start: 0, size: 11, core: 0, kept: 4 };
+        assert_eq!(span.places(4).collect::<Vec<_>>(), [0, 1, 2, 3, 3, 2, 1, 0, 0, 1, 2]);
     }
 
     #[test]
@@ -162,16 +179,16 @@ mod tests {
     }
 
     #[test]
-    fn tiles_cover_each_pixel_once() {
-        for size in [(1, 1), (700, 40), (1200, 1090)] {
-            let mut count = Raster::filled(size.0, size.1, 0);
-            for tile in Tile::all(size, 32) {
-                assert!(tile.size.0.is_multiple_of(32) && tile.core.0 + 2 * HALO <= tile.size.0);
-                for y in tile.at.1..tile.at.1 + tile.core.1 {
-                    (tile.at.0..tile.at.0 + tile.core.0).for_each(|x| count[(x, y)] += 1);
-                }
+    fn tiles_cover_each_pixel_once_and_see_what_is_around_it() {
+        for n in [1, 40, 544, 545, 700, 1090, 1200] {
+            let mut count = vec![0; n];
+            for span in Span::all(n, 32) {
+                assert!(span.size.is_multiple_of(32) && (span.start == 0 || span.start + span.size <= n));
+                assert!(span.start <= span.core.saturating_sub(HALO));
+                assert!(span.start + span.size >= (span.core + span.kept + HALO).min(n));
+                (span.core..span.core + span.kept).for_each(|x| count[x] += 1);
             }
-            assert!(count.data().iter().all(|n| *n == 1));
+            assert!(count.iter().all(|n| *n == 1), "{n}");
         }
     }
 }
