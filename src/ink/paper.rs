@@ -90,7 +90,7 @@ mod tests {
         for width in [2, 5, 6] {
             let tint = |x: usize, _: usize| if x < 40 { [1.0, 0.9, 0.5] } else { [1.0; 3] };
             let paper = filled(tint, Raster::from_fn(80, 50, |x, _| !(40 - width..40 + width).contains(&x)));
-            for (y, x) in (0..50).flat_map(|y| (0..80).filter(|x| x.abs_diff(40) > 1).map(move |x| (y, x))) {
+            for (y, x) in (0..50).flat_map(|y| (0..80).filter(|x: &usize| x.abs_diff(40) > 1).map(move |x| (y, x))) {
                 let off = paper[(x, y)].iter().zip(tint(x, y)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
                 assert!(off < 1e-5, "{off} off at ({x}, {y}) of {width}");
             }
