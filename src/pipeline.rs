@@ -112,7 +112,7 @@ impl Vectorizer {
     }
 
     /// The lines of a scan, as the observer left them; the caller may know its ink.
-    fn line_image(
+    pub(crate) fn line_image(
         &self,
         scan: &Scan,
         coverage: Option<&Raster<f32>>,

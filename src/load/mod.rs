@@ -13,7 +13,7 @@ mod tiff;
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
 use crate::raster::Raster;
-use image::RgbImage;
+use image::{DynamicImage, RgbImage};
 use std::io::{ErrorKind, Read};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -27,6 +27,13 @@ pub struct Scan {
     pub rgb: Option<RgbImage>,
     /// Dots per inch, where the input says.
     pub dpi: Option<f64>,
+}
+
+/// An image that is upright; what is transparent is laid over white, or over black where only that shows it.
+impl From<&DynamicImage> for Scan {
+    fn from(image: &DynamicImage) -> Self {
+        bitmap::scan(image, None)
+    }
 }
 
 /// What was read: the image to trace and, where the input was a vector drawing, the truth.

@@ -1,6 +1,6 @@
 //! What a training run is told, and where its data comes from.
 
-use super::source::{Skipped, Source};
+use super::source::{Skipped, Source, View};
 use crate::error::{Error, Result};
 use crate::synth::Kind;
 use crate::unet::{Output, UNetConfig};
@@ -33,8 +33,11 @@ pub struct TrainConfig {
     pub dice: f64,
     /// Kinds of pages that ink is not trained on, though it is validated on them.
     pub held_out: Vec<Kind>,
-    /// Share of the data of a field that is scans; the rest is clean.
+    /// Shares of the data of a field that are scans, and pages of all kinds whose ink the network tells that is built in; the
+    /// rest is clean.
     pub scans: f64,
+    /// See `scans`.
+    pub papers: f64,
     /// Side of the synthetic drawings that crops are cut from, in pixels.
     pub sheet: usize,
     /// Crops cut from each drawing.
@@ -83,6 +86,7 @@ impl Default for TrainConfig {
             dice: 0.2,
             held_out: Vec::new(),
             scans: 0.65,
+            papers: 0.0,
             sheet: 144,
             crops_a_sheet: 4,
             images: 0,
@@ -156,8 +160,11 @@ impl TrainConfig {
         if [self.svg_share, self.page_share].iter().any(|share| !(0.0..=1.0).contains(share)) {
             return fail("svg_share and page_share are between 0 and 1".into());
         }
-        if !(0.0..=1.0).contains(&self.scans) || self.rate.is_nan() || self.rate <= 0.0 {
-            return fail("scans is between 0 and 1, and rate is positive".into());
+        if self.scans < 0.0 || self.papers < 0.0 || !(0.0..=1.0).contains(&(self.scans + self.papers)) {
+            return fail("scans and papers are shares that make at most 1 together".into());
+        }
+        if self.rate.is_nan() || self.rate <= 0.0 {
+            return fail("rate is positive".into());
         }
         Ok(())
     }
@@ -175,9 +182,10 @@ impl TrainConfig {
         Ok((source, skipped))
     }
 
-    /// Whether some of the data are scans.
-    pub fn has_scans(&self) -> bool {
-        self.scans > 0.0
+    /// The ways in which the data of a field is seen, and the share of each.
+    pub fn views(&self) -> impl Iterator<Item = (View, f64)> {
+        let clean = 1.0 - self.scans - self.papers;
+        [(View::Clean, clean), (View::Scan, self.scans), (View::Paper, self.papers)].into_iter()
     }
 
     /// The learning rate of a step.

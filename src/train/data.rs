@@ -2,7 +2,7 @@
 
 use super::config::TrainConfig;
 use super::ink;
-use super::source::{Sight, Source, sight};
+use super::source::{Sight, Source, View, sight};
 use super::turn::Turn;
 use crate::ground_truth::{FieldTruth, Place};
 use crate::raster::Raster;
@@ -118,7 +118,14 @@ pub(super) fn stream(seed: u64, number: u64) -> ChaCha8Rng {
 
 /// The sheet that random numbers draw for training.
 pub(super) fn sheet(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig) -> Sight {
-    sight(rng, source, config, |rng| rng.random_bool(config.scans))
+    sight(rng, source, config, |rng| {
+        let mut left = rng.random::<f64>();
+        let drawn = config.views().find(|(_, share)| {
+            left -= share;
+            left < 0.0
+        });
+        drawn.map_or(View::Clean, |(view, _)| view)
+    })
 }
 
 /// The crops of one drawing. The same seed and number give the same crops.

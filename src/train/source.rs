@@ -2,19 +2,22 @@
 
 use super::config::TrainConfig;
 use super::ink::Stored;
-use crate::clean::clean;
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
+use crate::estimate::StructureTensor;
 use crate::ground_truth::{self, FieldTruth};
 use crate::load::{LoadOptions, Scan, load};
 use crate::options::Options;
+use crate::pipeline::Vectorizer;
 use crate::raster::Raster;
 use crate::render::render;
-use crate::synth::{self, ScanStyle};
+use crate::synth::{self, Kind, ScanStyle};
 use crate::unet::shown;
+use image::{DynamicImage, Rgb, RgbImage};
 use rand::Rng;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use walkdir::WalkDir;
 
 /// Longer side in pixels that SVG drawings are read at; they are scaled from there.
@@ -97,6 +100,17 @@ impl Source {
     }
 }
 
+/// What a drawing is seen on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// A render without noise.
+    Clean,
+    /// A gentle scan.
+    Scan,
+    /// A page of any kind, whose ink the network that is built in tells.
+    Paper,
+}
+
 /// What the network sees of a drawing, and what is true there; both of one size.
 #[derive(Clone, Debug)]
 pub struct Sight {
@@ -106,28 +120,48 @@ pub struct Sight {
     pub truth: FieldTruth,
 }
 
-/// Draws until there is a sheet on which cleaning leaves something, no smaller than a crop; then looks at it as at a clean
-/// rendering and, if `scanned` says so, as at a scan.
-pub fn sight<R: Rng>(rng: &mut R, source: &Source, config: &TrainConfig, scanned: impl Fn(&mut R) -> bool) -> Sight {
+/// Draws until there is a sheet on which cleaning leaves something, no smaller than a crop; the view is drawn anew for each.
+pub fn sight<R: Rng>(rng: &mut R, source: &Source, config: &TrainConfig, view: impl Fn(&mut R) -> View) -> Sight {
     loop {
-        let drawing = source.drawing(rng, config);
-        let scanned = scanned(rng);
-        if let Some(sight) = look(rng, &drawing, scanned).filter(|s| s.ink.width().min(s.ink.height()) >= config.crop) {
+        let view = view(rng);
+        let [drawing, other] = [source.drawing(rng, config), source.drawing(rng, config)];
+        let seen = match view {
+            View::Clean => clean_sheet(rng, drawing),
+            View::Scan => scanned(rng, drawing),
+            View::Paper => on_paper(rng, drawing, &other, config),
+        };
+        if let Some(sight) = seen.filter(|s| s.ink.width().min(s.ink.height()) >= config.crop) {
             return sight;
         }
     }
 }
 
-/// What the network sees of a drawing; `None` where cleaning finds no line.
-pub fn look(rng: &mut impl Rng, drawing: &Drawing, scanned: bool) -> Option<Sight> {
-    let coverage = render(drawing);
-    let gray = if scanned {
-        let style = ScanStyle::draw(rng);
-        synth::scan(rng, &coverage, &style)
-    } else {
-        synth::clean_ink(rng, &coverage).map(|i| 1.0 - i)
-    };
-    let image = clean(&Scan { gray, rgb: None, dpi: None }, &Options::default());
+fn clean_sheet(rng: &mut impl Rng, drawing: Drawing) -> Option<Sight> {
+    let gray = synth::clean_ink(rng, &render(&drawing)).map(|i| 1.0 - i);
+    seen(&Scan { gray, rgb: None, dpi: None }, drawing)
+}
+
+fn scanned(rng: &mut impl Rng, drawing: Drawing) -> Option<Sight> {
+    let style = ScanStyle::draw(rng);
+    let gray = synth::scan(rng, &render(&drawing), &style);
+    seen(&Scan { gray, rgb: None, dpi: None }, drawing)
+}
+
+fn on_paper(rng: &mut impl Rng, drawing: Drawing, other: &Drawing, config: &TrainConfig) -> Option<Sight> {
+    let kind = Kind::draw(rng, &config.held_out);
+    let page = synth::page(rng, kind, drawing, other);
+    let byte = |v: f32| (255.0 * v).round() as u8;
+    let (width, height) = page.ink.size();
+    let color = |x: u32, y: u32| Rgb([0, 1, 2].map(|c: usize| byte(page.color[c][(x as usize, y as usize)])));
+    let image = RgbImage::from_fn(width as u32, height as u32, color);
+    seen(&Scan::from(&DynamicImage::ImageRgb8(image)), page.drawing)
+}
+
+/// What the network sees of a drawing on some paper; `None` where cleaning finds no line.
+fn seen(scan: &Scan, drawing: Drawing) -> Option<Sight> {
+    static STAGES: LazyLock<Option<Vectorizer>> =
+        LazyLock::new(|| Vectorizer::with(Options::default(), Box::new(StructureTensor::default())).ok());
+    let image = STAGES.as_ref()?.line_image(scan, None, &mut ()).ok()?;
     if image.mask.count() == 0 {
         return None;
     }

@@ -72,8 +72,8 @@ impl Verdict {
     pub fn figures(&self) -> Vec<(String, f64)> {
         let named = |kind: &'static str| move |(name, value): (&str, f64)| (format!("{kind}_{name}"), value);
         match self {
-            Self::Field(Validation { clean, scan }) => {
-                let kinds = [("clean", Some(clean)), ("scan", scan.as_ref())];
+            Self::Field(Validation { clean, scan, paper }) => {
+                let kinds = [("clean", Some(clean)), ("scan", scan.as_ref()), ("paper", paper.as_ref())];
                 let kinds = kinds.into_iter().filter_map(|(kind, errors)| Some((kind, errors?)));
                 kinds.flat_map(|(kind, errors)| errors.figures().map(named(kind))).collect()
             }
@@ -88,9 +88,10 @@ impl Verdict {
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Field(Validation { clean, scan }) => {
+            Self::Field(Validation { clean, scan, paper }) => {
                 write!(f, "clean {:.2} deg on ink, {:.2} near junctions", clean.ink, clean.junction)?;
-                scan.map_or(Ok(()), |e| write!(f, "; scan {:.2}, {:.2}", e.ink, e.junction))
+                let others = [("scan", scan), ("paper", paper)].into_iter().filter_map(|(view, e)| Some((view, (*e)?)));
+                others.into_iter().try_for_each(|(view, e)| write!(f, "; {view} {:.2}, {:.2}", e.ink, e.junction))
             }
             Self::Ink(validation) => {
                 write!(f, "f1")?;

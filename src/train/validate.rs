@@ -3,7 +3,7 @@
 use super::config::TrainConfig;
 use super::data;
 use super::pictures;
-use super::source::{Sight, Source, sight};
+use super::source::{Sight, Source, View, sight};
 use crate::error::Result;
 use crate::field::{Frame, decode};
 use crate::ground_truth::{FieldTruth, Place};
@@ -42,24 +42,27 @@ impl FieldError {
     }
 }
 
-/// Errors on clean drawings and, where a run has them, on scans.
+/// Errors on clean drawings and, where a run has them, on scans and on pages of all kinds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
     /// On renders without noise.
     pub clean: FieldError,
     /// On synthetic scans.
     pub scan: Option<FieldError>,
+    /// On pages of all kinds.
+    pub paper: Option<FieldError>,
 }
 
 impl Validation {
     /// One number to keep the best network by, the smaller the better: errors relative to what they have to reach.
     pub fn score(&self) -> f64 {
         let part = |e: &FieldError, ink: f64, junction: f64| e.ink / ink + e.junction / junction;
-        part(&self.clean, 0.5, 3.0) + self.scan.map_or(0.0, |scan| part(&scan, 0.8, 4.5))
+        let [scan, paper] = [self.scan, self.paper].map(|errors| errors.map_or(0.0, |e| part(&e, 0.8, 4.5)));
+        part(&self.clean, 0.5, 3.0) + scan + paper
     }
 }
 
-/// Sheets of each kind that are drawn.
+/// Sheets of each view that are drawn.
 const EXAMPLES: usize = 4;
 
 /// Images that are run through the network together.
@@ -76,8 +79,8 @@ pub(super) struct Sheet {
 
 /// The fixed drawings of a run's validation.
 pub struct Validator {
-    /// Clean sheets, then scans where the run has them.
-    kinds: Vec<Vec<Sheet>>,
+    /// The sheets of each view that the run has; clean ones always.
+    views: Vec<(View, Vec<Sheet>)>,
 }
 
 impl Validator {
@@ -94,15 +97,15 @@ impl Validator {
         };
         if config.validation_sheets == 0 {
             let own = |n| sheet(data::sheet(&mut data::stream(config.seed, n), source, config));
-            return Self { kinds: vec![(0..config.images as u64).map(own).collect()] };
+            return Self { views: vec![(View::Clean, (0..config.images as u64).map(own).collect())] };
         }
-        let held_out = |n: u64, scanned| {
+        let held_out = |n: u64, view| {
             let mut rng = data::stream(config.seed ^ 0x5eed_07a1_1da7, n);
-            sheet(sight(&mut rng, source, config, |_| scanned))
+            sheet(sight(&mut rng, source, config, |_| view))
         };
-        let kinds: &[bool] = if config.has_scans() { &[false, true] } else { &[false] };
+        let views = config.views().filter(|(view, share)| *view == View::Clean || *share > 0.0);
         let numbers = || (0..config.validation_sheets as u64).into_par_iter();
-        Self { kinds: kinds.iter().map(|&scanned| numbers().map(|n| held_out(n, scanned)).collect()).collect() }
+        Self { views: views.map(|(view, _)| (view, numbers().map(|n| held_out(n, view)).collect())).collect() }
     }
 
     /// Runs a network that is on a plain device.
@@ -120,7 +123,7 @@ impl Validator {
     /// # Errors
     /// [`Error::Write`](crate::Error::Write).
     pub fn draw_examples(&self, model: &UNet, device: &Device, out: &Path) -> Result<()> {
-        let first = self.kinds.iter().flat_map(|sheets| sheets.iter().take(EXAMPLES));
+        let first = self.views.iter().flat_map(|(_, sheets)| sheets.iter().take(EXAMPLES));
         let of = |sheet| (sheet, predict(model, device, std::slice::from_ref(sheet)).swap_remove(0));
         pictures::draw(&first.map(of).collect::<Vec<_>>(), out)
     }
@@ -135,7 +138,8 @@ impl Validator {
             }
             sum.mean()
         };
-        Validation { clean: self.kinds.first().map(errors).unwrap_or_default(), scan: self.kinds.get(1).map(errors) }
+        let of = |view: View| self.views.iter().find(|(of, _)| *of == view).map(|(_, sheets)| errors(sheets));
+        Validation { clean: of(View::Clean).unwrap_or_default(), scan: of(View::Scan), paper: of(View::Paper) }
     }
 }
 

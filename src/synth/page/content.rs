@@ -20,6 +20,8 @@ pub(super) struct Content {
     pub pens: Vec<Raster<f32>>,
     /// Coverage by all of them, at the drawing's.
     pub ink: Raster<f32>,
+    /// All of them.
+    pub marks: Drawing,
 }
 
 impl Content {
@@ -32,8 +34,8 @@ impl Content {
         complete(rng, &mut drawing);
         let ink = render(&drawing);
         let pens = if rng.random_bool(0.25) { rng.random_range(2..4) } else { 1 };
-        let parts = if pens == 1 { vec![drawing] } else { shared(rng, &drawing, pens) };
-        Self { pens: parts.iter().map(|part| render(&part.scaled(1.0 / pixel))).collect(), ink }
+        let parts = if pens == 1 { vec![drawing.clone()] } else { shared(rng, &drawing, pens) };
+        Self { pens: parts.iter().map(|part| render(&part.scaled(1.0 / pixel))).collect(), ink, marks: drawing }
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Page {
     pub color: [Raster<f32>; 3],
     /// How much of each pixel the marks cover that were drawn, 0 to 1, whatever is to be seen of them.
     pub ink: Raster<f32>,
+    /// The marks.
+    pub drawing: Drawing,
 }
 
 /// A page of a kind that shows one drawing, and traces of another of its size.
@@ -63,7 +65,7 @@ pub fn page(rng: &mut impl Rng, kind: Kind, drawing: Drawing, other: &Drawing) -
     let brought = |plane: Raster<f32>| if pixel == 1.0 { plane } else { resampled(&plane, size, pixel) };
     let (mut ink, kept) = (content.ink, brought(kept));
     ink.data_mut().iter_mut().zip(kept.data()).for_each(|(i, k)| *i *= k);
-    Page { color: canvas.planes.map(brought), ink }
+    Page { color: canvas.planes.map(brought), ink, drawing: content.marks }
 }
 
 /// The contrast of the pen that is seen least.

@@ -6,7 +6,6 @@ use crate::error::{Error, Result};
 use crate::load::{LoadOptions, load};
 use crate::raster::Raster;
 use crate::render::render;
-use crate::synth::Page;
 use image::{GrayImage, RgbImage};
 use rand::Rng;
 use rayon::prelude::*;
@@ -73,7 +72,7 @@ impl Stored {
             Raster::from_fn(side, side, |x, y| f32::from(of(left + x as u32, top + y as u32)) / 255.0)
         };
         let color = [0, 1, 2].map(|c: usize| plane(&|x, y| self.color.get_pixel(x, y).0[c]));
-        Sample::of_page(&Page { color, ink: plane(&|x, y| self.ink.get_pixel(x, y).0[0]) })
+        Sample::of_page(&color, &plane(&|x, y| self.ink.get_pixel(x, y).0[0]))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::super::config::TrainConfig;
 use super::super::data::Sample;
 use super::super::source::Source;
+use crate::raster::Raster;
 use crate::render::render;
 use crate::synth::{self, Kind, Page};
 use crate::unet::MIDDLE;
@@ -35,7 +36,7 @@ pub(in super::super) fn crops(rng: &mut ChaCha8Rng, source: &Source, config: &Tr
     }
     let kind = Kind::draw(rng, &config.held_out);
     let page = page(rng, source, config, kind);
-    let whole = Sample::of_page(&page);
+    let whole = Sample::of_page(&page.color, &page.ink);
     let (width, height) = page.ink.size();
     (0..config.crops_a_sheet)
         .map(|_| {
@@ -47,11 +48,11 @@ pub(in super::super) fn crops(rng: &mut ChaCha8Rng, source: &Source, config: &Tr
 }
 
 impl Sample {
-    /// A page with its ink.
-    pub fn of_page(page: &Page) -> Self {
+    /// The red, green and blue of a page with its ink.
+    pub fn of_page(color: &[Raster<f32>; 3], ink: &Raster<f32>) -> Self {
         // Images have 256 steps.
         let stored = |v: &f32| (v * 255.0).round() / 255.0 - MIDDLE;
-        let input = page.color.iter().flat_map(|plane| plane.data().iter().map(stored)).collect();
-        Self { input, target: page.ink.data().to_vec(), ..Self::default() }
+        let input = color.iter().flat_map(|plane| plane.data().iter().map(stored)).collect();
+        Self { input, target: ink.data().to_vec(), ..Self::default() }
     }
 }

@@ -121,7 +121,7 @@ impl InkValidator {
 fn predict(model: &UNet, device: &Device, pages: &[Page]) -> Vec<Vec<f32>> {
     let Some(first) = pages.first() else { return Vec::new() };
     let (width, height) = first.ink.size();
-    let input: Vec<f32> = pages.iter().flat_map(|page| Sample::of_page(page).input).collect();
+    let input: Vec<f32> = pages.iter().flat_map(|page| Sample::of_page(&page.color, &page.ink).input).collect();
     let data = TensorData::new(input, [pages.len(), 3, height, width]);
     let seen = sigmoid(model.forward(Tensor::<4>::from_data(data, device))).into_data();
     let seen = seen.try_into_vec::<f32>().expect("the network computes in f32");
