@@ -144,9 +144,11 @@ impl Vectorizer {
             other => other,
         };
         let mut coverage = self.ink.estimate_until(scan, &cancel)?;
+        let darkness = by_threshold.as_ref().map(|image| ink::Darkness::of(image, scan.gray.size()));
+        darkness.iter().for_each(|darkness| darkness.complete(&mut coverage));
         observer.on_ink(scan, &mut coverage)?;
-        match by_threshold {
-            Some(image) if image.decisions.hues == 0 && ink::agree(&image, &coverage) => Ok(image),
+        match by_threshold.zip(darkness) {
+            Some((image, darkness)) if image.decisions.hues == 0 && darkness.agrees(&coverage) => Ok(image),
             _ => self.told(scan, &coverage, &cancel),
         }
     }

@@ -1,6 +1,6 @@
 //! Ink as a network sees it, at the size of lines that the network knows.
 
-use super::InkEstimator;
+use super::{InkEstimator, widened};
 use crate::cancel::Cancel;
 use crate::error::Result;
 use crate::load::Scan;
@@ -53,6 +53,22 @@ impl LearnedInk {
     }
 }
 
+impl LearnedInk {
+    /// The page at a size of which its lines are not too broad: the factor, the width of lines there, and what is seen.
+    fn best_look(&self, scan: &Scan, cancel: &Cancel) -> Result<(f64, Option<f64>, Raster<f32>)> {
+        let first = (FIRST_LOOK / scan.gray.width().max(scan.gray.height()) as f64).min(1.0);
+        let coverage = self.look(scan, first, cancel)?;
+        let seen = line_width(&coverage);
+        match seen.filter(|seen| first < 1.0 && *seen > ALIKE * LINE_WIDTH) {
+            Some(broad) => {
+                let factor = first * LINE_WIDTH / broad;
+                Ok((factor, Some(LINE_WIDTH), self.look(scan, factor, cancel)?))
+            }
+            None => Ok((first, seen, coverage)),
+        }
+    }
+}
+
 impl InkEstimator for LearnedInk {
     fn estimate(&self, scan: &Scan) -> Result<Raster<f32>> {
         self.estimate_until(scan, &Cancel::default())
@@ -60,33 +76,52 @@ impl InkEstimator for LearnedInk {
 
     /// A page is looked at as a whole first; how broad its lines then are says at what size they are known best. Of hairlines
     /// the network sees little, and nothing says how much too fine they are: the page is enlarged until they are seen, and
-    /// what is ink at any of these sizes is ink.
+    /// what is ink at any of these sizes is ink. Other lines are seen from twice as far too, where specks and grain are not:
+    /// only what both looks take for ink is. Solids fill the network's whole sight from near; from afar they do not.
     fn estimate_until(&self, scan: &Scan, cancel: &Cancel) -> Result<Raster<f32>> {
         let (width, height) = scan.gray.size();
-        let largest = (MOST_PIXELS / (width * height) as f64).sqrt().clamp(1.0, LARGEST);
-        let first = (FIRST_LOOK / width.max(height) as f64).min(1.0);
-        let look = |factor| {
-            let coverage = self.look(scan, factor, cancel)?;
-            Ok((line_width(&coverage).unwrap_or(LINE_WIDTH), resized(sure(coverage), width, height)))
-        };
-        let (mut seen, mut ink) = look(first)?;
-        if first < 1.0 && seen > ALIKE * LINE_WIDTH {
-            return Ok(look(first * LINE_WIDTH / seen)?.1);
+        let full = |coverage: Raster<f32>| resized(coverage, (width, height));
+        let (mut factor, mut seen, nearest) = self.best_look(scan, cancel)?;
+        let half = self.look(scan, 0.5 * factor, cancel)?;
+        let quarter = self.look(scan, 0.25 * factor, cancel)?;
+        let solids = opened(&most(sure(&quarter), &sure(&resized(half.clone(), quarter.size()))));
+        let mut ink = full(sure(&nearest));
+        if !is_hairline(seen) {
+            let half = full(half);
+            ink.data_mut().iter_mut().zip(half.data()).for_each(|(ink, half)| *ink *= (half / INK[0]).min(1.0));
         }
-        let mut factor = first;
-        while ALIKE * seen < LINE_WIDTH && ALIKE * factor < largest {
+        ink = most(ink, &full(solids));
+        let largest = (MOST_PIXELS / (width * height) as f64).sqrt().clamp(1.0, LARGEST);
+        while is_hairline(seen) && ALIKE * factor < largest {
             factor = (2.0 * factor).min(largest);
-            let (closer, more) = look(factor)?;
-            seen = closer;
-            ink.data_mut().iter_mut().zip(more.data()).for_each(|(ink, more)| *ink = ink.max(*more));
+            let closer = self.look(scan, factor, cancel)?;
+            seen = line_width(&closer);
+            ink = most(ink, &full(sure(&closer)));
         }
         Ok(ink)
     }
 }
 
+/// Whether lines of a width are too fine to be seen well.
+fn is_hairline(width: Option<f64>) -> bool {
+    width.is_some_and(|width| ALIKE * width < LINE_WIDTH)
+}
+
 /// What is surely ink, 0 to 1, of what the network says of it.
-fn sure(coverage: Raster<f32>) -> Raster<f32> {
+fn sure(coverage: &Raster<f32>) -> Raster<f32> {
     coverage.mapped(0.0, |c| ((c - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0))
+}
+
+/// The greater of two coverages of one size.
+fn most(mut a: Raster<f32>, b: &Raster<f32>) -> Raster<f32> {
+    a.data_mut().iter_mut().zip(b.data()).for_each(|(a, b)| *a = a.max(*b));
+    a
+}
+
+/// A coverage without what is narrower than three pixels: its least around each pixel, and the most of that around each.
+fn opened(coverage: &Raster<f32>) -> Raster<f32> {
+    let paper = coverage.mapped(0.0, |c| 1.0 - c);
+    widened(&widened(&paper, 1).mapped(0.0, |p| 1.0 - p), 1)
 }
 
 /// Width of the lines of a coverage, in pixels: the median over its places; `None` where there is no ink.
@@ -117,10 +152,10 @@ fn scaled(scan: &Scan, factor: f64) -> Scan {
     let side = |n: usize| ((n as f64 * factor).round() as usize).max(1);
     let (width, height) = (side(scan.gray.width()), side(scan.gray.height()));
     let rgb = scan.rgb.as_ref().map(|rgb| resize(rgb, width as u32, height as u32, FilterType::Triangle));
-    Scan { gray: resized(scan.gray.clone(), width, height), rgb, dpi: None }
+    Scan { gray: resized(scan.gray.clone(), (width, height)), rgb, dpi: None }
 }
 
-fn resized(raster: Raster<f32>, width: usize, height: usize) -> Raster<f32> {
+fn resized(raster: Raster<f32>, (width, height): (usize, usize)) -> Raster<f32> {
     if raster.size() == (width, height) {
         return raster;
     }

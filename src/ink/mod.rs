@@ -5,12 +5,12 @@
 //! ink it stays as it was scanned, less its paper, so that the places of edges, widths and colours are measured on the
 //! page itself and not on what an estimator made of it.
 
-mod agree;
+mod darkness;
 mod learned;
 mod paper;
 mod plain;
 
-pub(crate) use agree::agree;
+pub(crate) use darkness::Darkness;
 pub use learned::LearnedInk;
 pub(crate) use plain::is_plain;
 
