@@ -2,6 +2,7 @@
 
 use super::{InkEstimator, widened};
 use crate::cancel::Cancel;
+use crate::clean::runs;
 use crate::error::Result;
 use crate::load::Scan;
 use crate::raster::Raster;
@@ -21,6 +22,9 @@ const MOST_PIXELS: f64 = 6e6;
 /// What the network gives less than the first is no ink, and from the second on it is sure: ruling and the rims of stains lie
 /// below. Empirical.
 const INK: [f32; 2] = [0.6, 0.9];
+/// Of solid ink at least this share is seen from near too; empirical, guarded by
+/// `the_network_tells_ink_from_a_shadow_and_squares`.
+const SEEN_NEAR: f32 = 0.2;
 /// A place has lines where at least so many of its pixels are ink; places are squares of so many pixels a side.
 const PLACE: usize = 32;
 const LEAST_INK: f32 = 16.0;
@@ -84,7 +88,7 @@ impl InkEstimator for LearnedInk {
         let (mut factor, mut seen, nearest) = self.best_look(scan, cancel)?;
         let half = self.look(scan, 0.5 * factor, cancel)?;
         let quarter = self.look(scan, 0.25 * factor, cancel)?;
-        let solids = opened(&most(sure(&quarter), &sure(&resized(half.clone(), quarter.size()))));
+        let solids = solids(&nearest, &half, &quarter);
         let mut ink = full(sure(&nearest));
         if !is_hairline(seen) {
             let half = full(half);
@@ -110,6 +114,27 @@ fn is_hairline(width: Option<f64>) -> bool {
 /// What is surely ink, 0 to 1, of what the network says of it.
 fn sure(coverage: &Raster<f32>) -> Raster<f32> {
     coverage.mapped(0.0, |c| ((c - INK[0]) / (INK[1] - INK[0])).clamp(0.0, 1.0))
+}
+
+/// What is solid ink from afar and at least here and there from near too, at the size of the last look: a shadow is ink from
+/// afar alone.
+fn solids(near: &Raster<f32>, half: &Raster<f32>, quarter: &Raster<f32>) -> Raster<f32> {
+    let [near, half] = [near, half].map(|look| sure(&resized(look.clone(), quarter.size())));
+    let mut solid = opened(&most(sure(quarter), &half));
+    let parts = runs(&solid.mapped(false, |c| c > 0.0));
+    let mut sums = vec![(0usize, 0.0f32); parts.len()];
+    for run in &parts {
+        let (pixels, seen) = &mut sums[run.region];
+        *pixels += run.to - run.from;
+        *seen += near.row(run.y)[run.from..run.to].iter().sum::<f32>();
+    }
+    for run in parts {
+        let (pixels, seen) = sums[run.region];
+        if seen < SEEN_NEAR * pixels as f32 {
+            (run.from..run.to).for_each(|x| solid[(x, run.y)] = 0.0);
+        }
+    }
+    solid
 }
 
 /// The greater of two coverages of one size.
