@@ -74,7 +74,7 @@ fn on_paper(scan: &Scan, paper: Paper, seed: u64) -> Scan {
 fn crossing_lines_keep_their_colours() {
     let angles = steps(0.0, 150.0, 30.0);
     let cases = pairs(&pairs(&pairs_of_inks(), &angles), &[(2.0, 60.0), (4.0, 90.0)]);
-    sweep("crossings of two colours", 0.892, &cases, |&(((a, b), angle), (width, between))| {
+    sweep("crossings of two colours", 0.889, &cases, |&(((a, b), angle), (width, between))| {
         let across = |turn: f64| line(polar(CENTER, angle + turn, 40.0), polar(CENTER, angle + turn, -40.0), width);
         let truth = sheet(96, 96, vec![inked(across(0.0), a), inked(across(between), b)]);
         like(&truth, &trace(&color_scan(&truth, WHITE)), 12, 0.8)

@@ -100,7 +100,8 @@ impl InkEstimator for LearnedInk {
             factor = (2.0 * factor).min(largest);
             let closer = self.look(scan, factor, cancel)?;
             seen = line_width(&closer);
-            ink = most(ink, &full(sure(&closer)));
+            // A hairline between two rows of pixels is as sure as one in a row.
+            ink = most(ink, &full(widened(&sure(&closer), 1)));
         }
         Ok(ink)
     }

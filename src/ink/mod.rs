@@ -20,8 +20,6 @@ use crate::load::Scan;
 use crate::raster::Raster;
 use image::{Rgb, RgbImage};
 
-/// A line is ink all through from this coverage on: a line one pixel wide that lies between two rows covers half of each.
-const WHOLE: f32 = 0.5;
 /// How far the blurred edge of a line reaches beyond the pixels that are known to be ink, in pixels.
 const EDGE: i64 = 2;
 /// Coverage from which a pixel tells whether ink is lighter than its paper.
@@ -60,9 +58,9 @@ pub fn drawn(scan: &Scan, coverage: &Raster<f32>) -> Result<Scan> {
     let (width, height) = page;
     let ink = Raster::from_rows(width, height, [0.0; 3], |y, row| {
         for (x, to) in row.iter_mut().enumerate() {
-            let gate = (near[(x, y)] / WHOLE).min(1.0);
             let (seen, paper) = (color(scan, x, y), paper[(x, y)]);
-            *to = [0, 1, 2].map(|c| gate * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) });
+            *to = [0, 1, 2]
+                .map(|c| near[(x, y)] * if is_light { added(seen[c], paper[c]) } else { taken(seen[c], paper[c]) });
         }
     });
     let shade = |ink: f32| if is_light { ink } else { 1.0 - ink };
