@@ -12,6 +12,12 @@ impl Color {
     /// Black, the colour of ink where the input is grey.
     pub const BLACK: Self = Self([0, 0, 0]);
 
+    /// How far two colours are apart in Oklab: black and white 1.
+    pub fn distance(self, other: Self) -> f64 {
+        let (a, b) = (self.oklab(), other.oklab());
+        a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// Lightness from 0 to 1 and the two opponents of Oklab (Ottosson, *A perceptual color space for image
     /// processing*, 2020).
     pub(crate) fn oklab(self) -> [f64; 3] {

@@ -1,5 +1,6 @@
 //! The options of a trace, the same in the library and on the command line.
 
+use crate::drawing::Color;
 use crate::error::{Error, Result};
 
 /// How ink is told from paper.
@@ -84,6 +85,13 @@ pub struct Options {
     pub gap: Option<f64>,
     /// What becomes of dashed lines.
     pub dashes: Dashing,
+    /// Colours of which alone strokes and solid regions are drawn; all where there are none.
+    pub only: Vec<Color>,
+    /// Colours of which no stroke or solid region is drawn.
+    pub ignore: Vec<Color>,
+    /// How far a colour may be from one of `only` or `ignore` and still be meant, as a distance in Oklab: black and white are 1
+    /// apart. In `[0, 1]`.
+    pub color_tolerance: f64,
 }
 
 impl Default for Options {
@@ -98,6 +106,9 @@ impl Default for Options {
             width: StrokeWidth::Measured,
             gap: None,
             dashes: Dashing::Keep,
+            only: Vec::new(),
+            ignore: Vec::new(),
+            color_tolerance: 0.15,
         }
     }
 }
@@ -124,6 +135,12 @@ impl Options {
         }
     }
 
+    /// Whether ink of a colour is drawn.
+    pub fn takes(&self, color: Color) -> bool {
+        let among = |colors: &[Color]| colors.iter().any(|c| c.distance(color) <= self.color_tolerance);
+        (self.only.is_empty() || among(&self.only)) && !among(&self.ignore)
+    }
+
     /// Checks every range.
     ///
     /// # Errors
@@ -136,6 +153,7 @@ impl Options {
         };
         within("detail", self.detail, 0.01, 2.0)?;
         within("min-length", self.min_length, 0.0, 1000.0)?;
+        within("color-tolerance", self.color_tolerance, 0.0, 1.0)?;
         if let Some(gap) = self.gap {
             within("gap", gap, 0.0, 100.0)?;
         }

@@ -159,12 +159,14 @@ impl Vectorizer {
         clean::clean_drawn(&drawn, scan, &self.options, cancel)
     }
 
-    /// The drawing of a stroke graph, be it traced, read or corrected.
+    /// The drawing of a stroke graph, be it traced, read or corrected; of the colours that the options take.
     ///
     /// # Errors
     /// Whatever the observer says of the drawing; it sees no other stage.
     pub fn draw(&self, graph: &StrokeGraph, observer: &mut dyn Observer) -> Result<Drawing> {
         let mut drawing = fit::fit(graph, &self.options, &observer.cancel())?;
+        drawing.strokes.retain(|stroke| self.options.takes(stroke.color));
+        drawing.fills.retain(|fill| self.options.takes(fill.color));
         observer.on_drawing(&mut drawing)?;
         Ok(drawing)
     }

@@ -513,3 +513,51 @@ fn a_graph_is_written_and_traced_on() {
     desk.trace(&["cut.json", "-o", "e.svg"]).failed(&["cut.json: line "]);
     assert!(!desk.path("e.svg").exists() && !desk.path("look").exists());
 }
+
+#[test]
+fn ink_is_chosen_by_its_colour() {
+    let desk = Desk::new();
+    let image = image::RgbImage::from_fn(90, 60, |x, y| {
+        let ink = if (12..15).contains(&y) { [200, 0, 0] } else { [0, 0, 0] };
+        let is_inked = (10..80).contains(&x) && [12, 40].iter().any(|from| (*from..from + 3).contains(&y));
+        image::Rgb(if is_inked { ink } else { [255; 3] })
+    });
+    image.save(desk.path("two.png")).unwrap();
+    let strokes = |words: &[&str]| {
+        let mut all = vec!["two.png", "-o", "-"];
+        all.extend(words);
+        let output = desk.command(&all).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap().matches("<line").count()
+    };
+    assert_eq!(strokes(&[]), 2);
+    assert_eq!(strokes(&["--only", "#c80000"]), 1);
+    assert_eq!(strokes(&["--ignore", "black"]), 1);
+    assert_eq!(strokes(&["--only", "red", "--color-tolerance", "0.01"]), 0);
+    assert_eq!(strokes(&["--only", "#c80000", "--only", "black"]), 2);
+    let wrong = desk.command(&["two.png", "--only", "redish"]).output().unwrap();
+    assert_eq!(wrong.status.code(), Some(2));
+}
+
+#[test]
+fn what_is_no_line_drawing_is_traced_with_a_warning() {
+    let desk = Desk::new();
+    // Shaded discs before one another.
+    let image = GrayImage::from_fn(240, 240, |x, y| {
+        let disc = (0..60u32).rev().find(|k| {
+            let (cx, cy) = ((k * 97 % 240) as f64, (k * 61 % 240) as f64);
+            (f64::from(x) - cx).hypot(f64::from(y) - cy) < 12.0 + f64::from(k * 7 % 40)
+        });
+        Luma([disc.map_or(128, |k| (20 + (k * 53 + x / 3 + y / 5) % 215) as u8)])
+    });
+    image.save(desk.path("tones.png")).unwrap();
+    let run = |name: &str| desk.command(&[name, "--ink", "threshold", "-o", "out.svg"]).output().unwrap();
+    let said = String::from_utf8(run("tones.png").stderr).unwrap();
+    assert!(said.contains("looks like no line drawing"), "{said}");
+    assert!(run("drawing.png").stderr.is_empty());
+    let records =
+        desk.command(&["tones.png", "drawing.png", "--ink", "threshold", "-o", "out", "--json"]).output().unwrap();
+    let records = String::from_utf8(records.stdout).unwrap();
+    let [tones, drawing] = records.lines().collect::<Vec<_>>()[..] else { panic!("{records}") };
+    assert!(tones.contains("looks like no line drawing") && !drawing.contains("looks like"), "{records}");
+}

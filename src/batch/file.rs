@@ -6,7 +6,8 @@ use crate::clean::LineImage;
 use crate::error::{Error, Result};
 use crate::graph::{JunctionKind, StrokeGraph};
 use crate::hooks::Observer;
-use crate::load::{LoadOptions, load};
+use crate::inspect::{NO_DRAWING, edge_share};
+use crate::load::{LoadOptions, Scan, load};
 use crate::pipeline::Vectorizer;
 use crate::write::{SvgOptions, to_svg, write_file};
 use std::fs;
@@ -35,6 +36,8 @@ pub enum Traced {
         fills: usize,
         /// Number of points at which lines meet.
         junctions: usize,
+        /// Whether it looks like no line drawing ([`crate::inspect::edge_share`]).
+        unlike: bool,
     },
     /// Nothing: there is an output that is no older than the input.
     Skipped,
@@ -56,7 +59,7 @@ impl FileTracer {
             return Ok(Traced::Skipped);
         }
         let scan = load(&job.input, &self.load)?.scan;
-        let mut count = Count { junctions: 0, cancel: cancel.clone() };
+        let mut count = Count { scan: &scan, junctions: 0, unlike: false, cancel: cancel.clone() };
         let drawing = self.vectorizer.trace_observed(&scan, &mut count)?;
         let title = job.input.file_name().map(|name| name.to_string_lossy().into_owned());
         let svg = to_svg(&drawing, &SvgOptions { precision: self.precision, title });
@@ -65,7 +68,8 @@ impl FileTracer {
             fs::create_dir_all(folder).map_err(|cause| Error::Write { path: folder.to_owned(), cause })?;
         }
         write_file(&job.output, svg.as_bytes())?;
-        Ok(Traced::Drawn { strokes: drawing.strokes.len(), fills: drawing.fills.len(), junctions: count.junctions })
+        let Count { junctions, unlike, .. } = count;
+        Ok(Traced::Drawn { strokes: drawing.strokes.len(), fills: drawing.fills.len(), junctions, unlike })
     }
 }
 
@@ -78,18 +82,21 @@ fn is_current(job: &Job) -> bool {
     matches!((changed(&job.input), changed(&job.output)), (Some(input), Some(output)) if output >= input)
 }
 
-/// Counts junctions and hands the token on.
-struct Count {
+/// Counts junctions, and hands the token on.
+struct Count<'a> {
+    scan: &'a Scan,
     junctions: usize,
+    unlike: bool,
     cancel: Cancel,
 }
 
-impl Observer for Count {
+impl Observer for Count<'_> {
     fn cancel(&self) -> Cancel {
         self.cancel.clone()
     }
 
-    fn on_graph(&mut self, _: &LineImage, graph: &mut StrokeGraph) -> Result<()> {
+    fn on_graph(&mut self, image: &LineImage, graph: &mut StrokeGraph) -> Result<()> {
+        self.unlike = edge_share(self.scan, image, graph) > NO_DRAWING;
         let meets = |kind| !matches!(kind, JunctionKind::FreeEnd | JunctionKind::Seam);
         self.junctions = graph.graph.node_weights().filter(|node| meets(node.kind)).count();
         Ok(())

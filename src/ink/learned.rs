@@ -100,8 +100,8 @@ impl InkEstimator for LearnedInk {
             factor = (2.0 * factor).min(largest);
             let closer = self.look(scan, factor, cancel)?;
             seen = line_width(&closer);
-            // A hairline between two rows of pixels is as sure as one in a row.
-            ink = most(ink, &full(widened(&sure(&closer), 1)));
+            // A hairline between two rows covers half of each, and is as sure as one in a row.
+            ink = most(ink, &full(sure(&closer)).mapped(0.0, |c| (2.0 * c).min(1.0)));
         }
         Ok(ink)
     }

@@ -3,7 +3,7 @@
 use crate::args::TalkArgs;
 use crate::failure::{Failure, one_line};
 use crate::target;
-use crate::vectorize::EMPTY;
+use crate::vectorize::{EMPTY, UNLIKE};
 use fieldtrace::Error;
 use fieldtrace::batch::{Event, Job, Outcome, Plan, Traced};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -134,6 +134,7 @@ fn status(result: &fieldtrace::Result<Traced>) -> &'static str {
 fn warnings(traced: &Traced) -> &'static [&'static str] {
     match traced {
         Traced::Drawn { strokes: 0, fills: 0, .. } => &[EMPTY],
+        Traced::Drawn { unlike: true, .. } => &[UNLIKE],
         _ => &[],
     }
 }

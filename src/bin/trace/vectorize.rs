@@ -7,7 +7,7 @@ use crate::target;
 use crate::watch::{Stages, Watch};
 use fieldtrace::Error;
 use fieldtrace::graph::StrokeGraph;
-use fieldtrace::inspect::DebugDir;
+use fieldtrace::inspect::{DebugDir, NO_DRAWING};
 use fieldtrace::load::{Scan, load_bytes, read_bytes};
 use fieldtrace::write::graph_json::{from_json, is_json, to_json};
 use fieldtrace::write::{SvgOptions, to_svg, write_file};
@@ -15,6 +15,9 @@ use std::path::Path;
 
 /// The warning about a drawing without strokes.
 pub(crate) const EMPTY: &str = "no ink was found, the drawing is empty";
+/// The warning about a photograph or a painting.
+pub(crate) const UNLIKE: &str = "looks like no line drawing: its lines follow edges between light and dark, not ink";
+
 /// What is to be traced: an image, or a graph of an earlier trace.
 enum Source {
     Scan(Scan),
@@ -33,12 +36,17 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     let mut stages = Stages::start(args.talk.verbose);
     let source = read(input, args, &mut stages).map_err(failed)?;
     let debug = debug_dir(&source, args.debug_dir.as_deref(), &name)?;
-    let mut watch = Watch { stages: &mut stages, debug, streamlines: 0 };
+    let scan = match &source {
+        Source::Scan(scan) => Some(scan),
+        Source::Graph(_) => None,
+    };
+    let mut watch = Watch { stages: &mut stages, debug, streamlines: 0, scan, edge_share: 0.0 };
     let graph = match &source {
         Source::Scan(scan) => vectorizer.graph(scan, &mut watch).map_err(failed)?,
         Source::Graph(graph) => graph.clone(),
     };
     let drawing = vectorizer.draw(&graph, &mut watch).map_err(failed)?;
+    let edge_share = watch.edge_share;
     if let Some(path) = graph_path {
         put(path, &to_json(&graph), &mut stages).map_err(failed)?;
     }
@@ -48,8 +56,11 @@ pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
         let svg = to_svg(&drawing, &SvgOptions { precision: args.precision, title: title(input) });
         put(&output, &svg, &mut stages).map_err(failed)?;
     }
-    if drawing.strokes.is_empty() && drawing.fills.is_empty() && !args.talk.quiet {
-        eprintln!("trace: {name}: warning: {EMPTY}");
+    let is_empty = drawing.strokes.is_empty() && drawing.fills.is_empty();
+    for warning in [(is_empty, EMPTY), (edge_share > NO_DRAWING, UNLIKE)].iter().filter(|(is_due, _)| *is_due) {
+        if !args.talk.quiet {
+            eprintln!("trace: {name}: warning: {}", warning.1);
+        }
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use fieldtrace::error::Result;
 use fieldtrace::field::PolyVectorField;
 use fieldtrace::graph::{Line, Ran, StrokeGraph};
 use fieldtrace::hooks::Observer;
-use fieldtrace::inspect::DebugDir;
+use fieldtrace::inspect::{DebugDir, edge_share};
 use fieldtrace::load::Scan;
 use fieldtrace::raster::Raster;
 use fieldtrace::streamline::Streamline;
@@ -92,6 +92,10 @@ pub(crate) struct Watch<'a> {
     pub(crate) debug: Option<DebugDir<'a>>,
     /// Streamlines so far.
     pub(crate) streamlines: usize,
+    /// What is traced, where it is an image.
+    pub(crate) scan: Option<&'a Scan>,
+    /// How much of its lines is none.
+    pub(crate) edge_share: f64,
 }
 
 impl Watch<'_> {
@@ -162,6 +166,8 @@ impl Observer for Watch<'_> {
             let (trails, dots) = (graph.trails.len(), graph.dots.len());
             format!("{streamlines} streamlines, {nodes} nodes, {edges} edges, {trails} trails, {dots} dots")
         });
+        self.edge_share = self.scan.map_or(0.0, |scan| edge_share(scan, image, graph));
+        self.stages.tell("edges of tones", || format!("{:.0} % of the lines' length", 100.0 * self.edge_share));
         self.draw(|debug| debug.on_graph(image, graph))
     }
 

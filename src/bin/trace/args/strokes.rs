@@ -2,7 +2,9 @@
 
 use super::parse_number;
 use clap::{Args, ValueEnum};
+use fieldtrace::drawing::Color;
 use fieldtrace::options::{self, Dashing, Ink, Invert, Options, StrokeWidth, Threshold};
+use std::str::FromStr;
 
 /// How ink is told from paper.
 #[derive(Debug, Args)]
@@ -49,6 +51,16 @@ pub(crate) struct FitArgs {
     /// Dashes at even distances: `keep` each as a stroke, or `join` them into a dashed one [default: keep]
     #[arg(long, value_name = "WHAT", value_parser = parse_dashes)]
     dashes: Option<Dashing>,
+    /// Draw only strokes and solids of this colour, such as '#c00000' or red; may be given more than once
+    #[arg(long, value_name = "COLOR", value_parser = parse_color)]
+    only: Vec<Color>,
+    /// Leave out strokes and solids of this colour; may be given more than once
+    #[arg(long, value_name = "COLOR", value_parser = parse_color)]
+    ignore: Vec<Color>,
+    /// How far from the colour of --only or --ignore ink may be: 0 is that colour alone, black and white are 1 apart
+    /// [default: 0.15]
+    #[arg(long, value_name = "D", value_parser = parse_number, allow_negative_numbers = true)]
+    color_tolerance: Option<f64>,
     /// Leave out a pass between streamlines and graph, by its name
     #[arg(long, value_name = "PASS", hide = true)]
     pub(crate) without: Vec<String>,
@@ -86,7 +98,16 @@ pub(crate) fn options(clean: &CleanArgs, fit: Option<&FitArgs>) -> Options {
         width: fit.and_then(|f| f.width).unwrap_or(base.width),
         gap: fit.and_then(|f| f.gap).map_or(base.gap, |Gap(gap)| gap),
         dashes: fit.and_then(|f| f.dashes).unwrap_or(base.dashes),
+        only: fit.map_or(base.only, |f| f.only.clone()),
+        ignore: fit.map_or(base.ignore, |f| f.ignore.clone()),
+        color_tolerance: fit.and_then(|f| f.color_tolerance).unwrap_or(base.color_tolerance),
     }
+}
+
+/// A colour as CSS writes it.
+fn parse_color(text: &str) -> Result<Color, String> {
+    let color = svgtypes::Color::from_str(text).map_err(|_| "not a colour such as #c00000 or red")?;
+    Ok(Color([color.red, color.green, color.blue]))
 }
 
 fn parse_threshold(text: &str) -> Result<Threshold, String> {

@@ -1,0 +1,183 @@
+//! No stroke lies where there is no ink, and no solid region covers what is none.
+
+mod common;
+
+use common::draw::{arc, circle, color_scan, cubic, line, on_paper, scan, scan_of, sheet};
+use common::paper::Paper;
+use fieldtrace::clean::LineImage;
+use fieldtrace::drawing::{Centreline, Color, Drawing};
+use fieldtrace::hooks::Observer;
+use fieldtrace::inspect::{NO_DRAWING, edge_share};
+use fieldtrace::load::Scan;
+use fieldtrace::options::{Ink, Options};
+use fieldtrace::pipeline::Vectorizer;
+use fieldtrace::raster::Raster;
+use kurbo::{ParamCurve, Point, Shape};
+
+const SIDE: usize = 180;
+
+/// Keeps what strokes were made of, and how much of that were edges of tones.
+#[derive(Default)]
+struct Kept {
+    image: Option<LineImage>,
+    edges: f64,
+    scan: Option<Scan>,
+}
+
+impl Observer for Kept {
+    fn on_line_image(&mut self, image: &mut LineImage) -> fieldtrace::Result<()> {
+        self.image = Some(image.clone());
+        Ok(())
+    }
+
+    fn on_graph(&mut self, image: &LineImage, graph: &mut fieldtrace::graph::StrokeGraph) -> fieldtrace::Result<()> {
+        self.edges = self.scan.as_ref().map_or(0.0, |scan| edge_share(scan, image, graph));
+        Ok(())
+    }
+}
+
+/// The farthest that a point of a stroke lies from ink, in widths of its line or of a typical one, and where.
+fn farthest(image: &LineImage, drawing: &Drawing) -> (f64, Point) {
+    let layers: Vec<&LineImage> = std::iter::once(image).chain(image.broad.as_deref()).collect();
+    let is_ink = |p: Point| {
+        layers.iter().any(|layer| {
+            let at = (p.to_vec2() * layer.scale).to_point();
+            layer.mask.at(at) == Some(true) || layer.solid.at(at) == Some(true)
+        })
+    };
+    let mut most = (0.0, Point::ZERO);
+    for stroke in drawing.strokes.iter().filter(|stroke| !matches!(stroke.centreline, Centreline::Dot(_))) {
+        let width = stroke.width.max(image.line_width / image.scale);
+        for piece in stroke.centreline.to_path().segments() {
+            let count = (piece.to_cubic().perimeter(0.5) / 2.0).ceil().max(1.0) as usize;
+            for p in (0..=count).map(|k| piece.eval(k as f64 / count as f64)) {
+                let ring =
+                    |reach: f64| (0..16).map(move |k| p + kurbo::Vec2::from_angle(f64::from(k) * 0.3927) * reach);
+                let reach = (0..60).map(|k| 0.1 * f64::from(k)).find(|reach| ring(reach * width).any(is_ink));
+                let reach = reach.unwrap_or(6.0);
+                if reach > most.0 {
+                    most = (reach, p);
+                }
+            }
+        }
+    }
+    most
+}
+
+/// Random lines, arcs, circles and curves.
+fn scribble(seed: u64) -> Drawing {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut random = |low: f64, high: f64| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        low + (high - low) * (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let count = random(3.0, 12.0) as usize;
+    let width = random(1.5, 5.0);
+    let strokes = (0..count).map(|_| {
+        let mut place = || (random(5.0, 175.0), random(5.0, 175.0));
+        let [a, b, c, d] = [place(), place(), place(), place()];
+        match random(0.0, 4.0) as usize {
+            0 => line(a, b, width),
+            1 => circle(a, random(6.0, 50.0), width),
+            2 => arc(a, random(10.0, 60.0), random(0.0, 6.0), random(1.0, 5.0), width),
+            _ => cubic([a, b, c, d], width),
+        }
+    });
+    sheet(SIDE, SIDE, strokes.collect())
+}
+
+#[track_caller]
+fn check(what: &str, scan: &Scan, ink: Ink) {
+    let vectorizer = Vectorizer::new(Options { ink, ..Options::default() }).unwrap();
+    let mut kept = Kept { scan: Some(scan.clone()), ..Kept::default() };
+    let drawing = vectorizer.trace_observed(scan, &mut kept).unwrap();
+    let image = kept.image.unwrap();
+    let (far, at) = farthest(&image, &drawing);
+    assert!(far <= 1.0, "{what}, {ink:?}: a stroke at {at} is {far:.1} widths off the ink");
+    let covered = drawing.fills.iter().map(|fill| fill.outline.area().abs()).sum::<f64>();
+    let solid = image.solid.count() as f64 / image.scale.powi(2);
+    assert!(covered <= 1.2 * solid + 20.0, "{what}, {ink:?}: {covered:.0} pixels filled, {solid:.0} solid");
+    if what != "tones" {
+        assert!(kept.edges < NO_DRAWING, "{what}, {ink:?}: {:.2} edges", kept.edges);
+    }
+}
+
+#[test]
+fn strokes_lie_on_ink_on_any_page() {
+    for seed in 0..12 {
+        let drawing = scribble(seed);
+        check(&format!("render {seed}"), &scan(&drawing), Ink::Auto);
+        for (name, paper) in [("pencil", Paper::PENCIL), ("ink", Paper::INK)] {
+            for ink in [Ink::Auto, Ink::Learned, Ink::Threshold] {
+                check(&format!("{name} {seed}"), &on_paper(&drawing, paper, seed), ink);
+            }
+        }
+        check(&format!("colour {seed}"), &color_scan(&drawing, Color([250, 240, 200])), Ink::Auto);
+    }
+}
+
+/// Discs of soft and hard tones, as in a photograph.
+fn tones(seed: u64) -> Scan {
+    let at = |k: u64| {
+        let v = (seed * 31 + k).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        [v >> 40, v >> 20, v].map(|v| (v & 0xfffff) as f32 / 1_048_576.0)
+    };
+    scan_of(Raster::from_fn(SIDE, SIDE, |x, y| {
+        let mut light = 0.5;
+        for k in 0..30 {
+            let ([a, b, c], [tone, slope, _]) = (at(2 * k), at(2 * k + 1));
+            let (dx, dy) = (x as f32 - 180.0 * a, y as f32 - 180.0 * b);
+            if dx.hypot(dy) < 10.0 + 40.0 * c {
+                light = tone + 0.006 * (slope - 0.5) * (dx + dy);
+            }
+        }
+        light.clamp(0.0, 1.0)
+    }))
+}
+
+#[test]
+fn a_page_of_tones_is_traced_on_its_ink_and_looks_like_no_drawing() {
+    let mut shares = Vec::new();
+    for seed in 0..8 {
+        let page = tones(seed);
+        check("tones", &page, Ink::Auto);
+        let mut kept = Kept { scan: Some(page.clone()), ..Kept::default() };
+        let by_darkness = Options { ink: Ink::Threshold, ..Options::default() };
+        let drawing = Vectorizer::new(by_darkness).unwrap().trace_observed(&page, &mut kept).unwrap();
+        if drawing.strokes.len() >= 5 {
+            shares.push(kept.edges);
+        }
+    }
+    let unlike = shares.iter().filter(|share| **share > NO_DRAWING).count();
+    assert!(shares.len() >= 3 && unlike + 1 >= shares.len(), "edges: {shares:.2?}");
+}
+
+#[test]
+fn ink_is_chosen_by_its_colour() {
+    let inked = |color, y: f64| fieldtrace::drawing::Stroke { color, ..line((20.0, y), (160.0, y + 20.0), 3.0) };
+    let (red, blue) = (Color([200, 20, 20]), Color([20, 40, 190]));
+    let page = color_scan(
+        &sheet(SIDE, SIDE, vec![inked(red, 40.0), inked(blue, 80.0), inked(Color::BLACK, 120.0)]),
+        Color([255; 3]),
+    );
+    let colors = |only: &[Color], ignore: &[Color], color_tolerance: f64| {
+        let options = Options { only: only.into(), ignore: ignore.into(), color_tolerance, ..Options::default() };
+        let drawing = Vectorizer::new(options).unwrap().trace(&page).unwrap();
+        let mut near: Vec<usize> = drawing
+            .strokes
+            .iter()
+            .map(|s| [red, blue, Color::BLACK].iter().position(|c| c.distance(s.color) < 0.1).unwrap())
+            .collect();
+        near.sort_unstable();
+        near
+    };
+    assert_eq!(colors(&[], &[], 0.15), [0, 1, 2]);
+    assert_eq!(colors(&[red], &[], 0.15), [0]);
+    assert_eq!(colors(&[red, Color::BLACK], &[], 0.15), [0, 2]);
+    assert_eq!(colors(&[], &[blue], 0.15), [0, 2]);
+    assert_eq!(colors(&[Color([255, 80, 80])], &[], 0.02), [] as [usize; 0]);
+    assert_eq!(colors(&[Color([255, 80, 80])], &[], 0.3), [0]);
+    assert!(Vectorizer::new(Options { color_tolerance: 1.5, ..Options::default() }).is_err());
+}
