@@ -124,7 +124,10 @@ impl Vectorizer {
                 observer.on_ink(scan, &mut coverage)?;
                 self.told(scan, &coverage, &observer.cancel())?
             }
-            None => self.cleaned(scan, observer)?,
+            None => match clean::block(scan, &self.options) {
+                1 => self.cleaned(scan, observer)?,
+                block => self.cleaned(&clean::reduced(scan, block), observer)?.of_finer(block),
+            },
         };
         observer.on_line_image(&mut image)?;
         image.validate()?;
