@@ -63,8 +63,11 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
 ///
 /// # Errors
 /// The token's.
-pub(crate) fn clean_drawn(drawn: &Scan, as_it_was: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
-    cleaned(Page::of_drawn(drawn, as_it_was, options.invert), options, cancel)
+pub(crate) fn clean_drawn(drawn: Scan, as_it_was: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
+    let page = Page::of_drawn(&drawn, as_it_was, options.invert);
+    // Large pages are kept no longer than they are needed.
+    drop(drawn);
+    cleaned(page, options, cancel)
 }
 
 fn cleaned(page: Page, options: &Options, cancel: &Cancel) -> Result<LineImage> {

@@ -13,8 +13,8 @@ use super::width::Ridge;
 use crate::ink;
 use crate::load::Scan;
 use crate::options::Options;
+use crate::raster::Raster;
 use image::RgbImage;
-use rayon::prelude::*;
 
 /// Scans of fewer pixels are quick as they are.
 const LARGE: usize = 4_000_000;
@@ -50,30 +50,25 @@ pub(crate) fn reduced(scan: &Scan, block: usize) -> Scan {
 }
 
 fn averaged_rgb(rgb: &RgbImage, block: usize) -> RgbImage {
-    let side = |pixels: u32| pixels.div_ceil(block as u32);
-    let mut small = RgbImage::new(side(rgb.width()), side(rgb.height()));
-    let rows: Vec<&[u8]> = rgb.as_raw().chunks_exact(3 * rgb.width() as usize).collect();
-    small.as_mut().par_chunks_exact_mut(3 * side(rgb.width()) as usize).zip(rows.par_chunks(block)).for_each(
-        |(to, rows)| {
-            for (x, to) in to.chunks_exact_mut(3).enumerate() {
-                let (mut sum, mut count) = ([0; 3], 0);
-                for row in rows {
-                    for pixel in row[3 * block * x..].chunks_exact(3).take(block) {
-                        sum.iter_mut().zip(pixel).for_each(|(sum, &v)| *sum += u32::from(v));
-                        count += 1;
-                    }
-                }
-                to.copy_from_slice(&sum.map(|sum| ((sum + count / 2) / count) as u8));
+    let (width, height) = (rgb.width() as usize, rgb.height() as usize);
+    let small = Raster::from_rows(width.div_ceil(block), height.div_ceil(block), [0; 3], |y, row| {
+        let rows = y * block..height.min((y + 1) * block);
+        for (x, mean) in row.iter_mut().enumerate() {
+            let columns = x * block..width.min((x + 1) * block);
+            let count = (columns.len() * rows.len()) as u32;
+            let mut sum = [0; 3];
+            for (x, y) in rows.clone().flat_map(|y| columns.clone().map(move |x| (x, y))) {
+                sum.iter_mut().zip(rgb.get_pixel(x as u32, y as u32).0).for_each(|(sum, v)| *sum += u32::from(v));
             }
-        },
-    );
-    small
+            *mean = sum.map(|sum| ((sum + count / 2) / count) as u8);
+        }
+    });
+    small.into_rgb_image()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::Raster;
 
     /// A page of slanted lines of a width, whose paper varies from pixel to pixel by so much.
     fn page(width: f32, grain: f32) -> Scan {
