@@ -21,7 +21,7 @@ pub trait Observer {
         Cancel::default()
     }
     /// After the ink of a page has been told from everything else on it, where that was asked of an estimator: the share of
-    /// each pixel that is covered by it, 0 to 1.
+    /// each pixel that is covered by it, 0 to 1. A large scan of broad lines was reduced before.
     ///
     /// # Errors
     /// Stops the trace; so for the other methods.

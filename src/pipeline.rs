@@ -122,9 +122,12 @@ impl Vectorizer {
             Some(coverage) => {
                 let mut coverage = coverage.clone();
                 observer.on_ink(scan, &mut coverage)?;
-                self.told(scan, &coverage, &observer.cancel())?
+                self.told(scan, coverage, &observer.cancel())?
             }
-            None => self.cleaned(scan, observer)?,
+            None => match clean::block(scan, &self.options) {
+                1 => self.cleaned(scan, observer)?,
+                block => self.cleaned(&clean::reduced(scan, block), observer)?.of_finer(block),
+            },
         };
         observer.on_line_image(&mut image)?;
         image.validate()?;
@@ -147,16 +150,20 @@ impl Vectorizer {
         let darkness = by_threshold.as_ref().map(|image| ink::Darkness::of(image, scan.gray.size()));
         darkness.iter().for_each(|darkness| darkness.complete(&mut coverage));
         observer.on_ink(scan, &mut coverage)?;
-        match by_threshold.zip(darkness) {
-            Some((image, darkness)) if image.decisions.hues == 0 && darkness.agrees(&coverage) => Ok(image),
-            _ => self.told(scan, &coverage, &cancel),
+        if let Some((image, darkness)) = by_threshold.zip(darkness)
+            && image.decisions.hues == 0
+            && darkness.agrees(&coverage)
+        {
+            return Ok(image);
         }
+        self.told(scan, coverage, &cancel)
     }
 
     /// The lines of a scan whose ink is known.
-    fn told(&self, scan: &Scan, coverage: &Raster<f32>, cancel: &Cancel) -> Result<LineImage> {
-        let drawn = ink::drawn(scan, coverage)?;
-        clean::clean_drawn(&drawn, scan, &self.options, cancel)
+    fn told(&self, scan: &Scan, coverage: Raster<f32>, cancel: &Cancel) -> Result<LineImage> {
+        let drawn = ink::drawn(scan, &coverage)?;
+        drop(coverage);
+        clean::clean_drawn(drawn, scan, &self.options, cancel)
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected; of the colours that the options take.

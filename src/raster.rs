@@ -3,7 +3,7 @@
 //! Pixel `(x, y)` covers `[x, x + 1) x [y, y + 1)`, so the centre of the first pixel is `(0.5, 0.5)`.
 
 use bytemuck::{Zeroable, zeroed_vec};
-use image::{GrayImage, ImageBuffer, Luma, Pixel};
+use image::{GrayImage, ImageBuffer, Luma, Pixel, RgbImage};
 use kurbo::Point;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -164,6 +164,14 @@ impl Raster<f32> {
     pub fn from_image(image: ImageBuffer<Luma<f32>, Vec<f32>>) -> Self {
         let (width, height) = (image.width() as usize, image.height() as usize);
         Self { width, height, data: image.into_raw() }
+    }
+}
+
+impl Raster<[u8; 3]> {
+    /// The colours as an `image` buffer, without copying.
+    pub(crate) fn into_rgb_image(self) -> RgbImage {
+        let (width, height) = (self.width as u32, self.height as u32);
+        RgbImage::from_raw(width, height, self.data.into_flattened()).expect("length is 3 * width * height")
     }
 }
 

@@ -44,8 +44,20 @@ pub(super) fn image(mut ink: Raster<f32>, mut mask: Mask, fine: &LineImage) -> L
     let scale = fine.scale * resampling.scale;
     let blur = blur_of(&ink, &mask, &depth, line_width, noise.mean(), resampling, scale);
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
-    let (solids, colors) = (Vec::new(), fine.colors.clone());
-    let decisions = fine.decisions;
     let solid = Raster::zeroed(ink.width(), ink.height());
-    LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, solid, broad: None, colors, decisions }
+    LineImage {
+        ink,
+        mask,
+        depth,
+        line_width,
+        scale,
+        page_scale: scale,
+        noise,
+        blur,
+        solids: Vec::new(),
+        solid,
+        broad: None,
+        colors: fine.colors.clone(),
+        decisions: fine.decisions,
+    }
 }

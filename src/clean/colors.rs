@@ -121,8 +121,9 @@ fn absorbance(rgb: &RgbImage, dark_ground: bool) -> [Raster<f32>; 3] {
             });
         })
     });
-    let papers = paper::paper_levels(light.each_ref());
-    [0, 1, 2].map(|c| paper::divide(&light[c], &papers[c]))
+    let [r, g, b] = paper::paper_levels(light.each_ref());
+    let mut papers = [r, g, b].into_iter();
+    light.map(|light| paper::divide(&light, &papers.next().expect("one for each channel")))
 }
 
 /// A tone seen along the grey axis of the space of colours: opponents of red, and of green against blue.

@@ -21,6 +21,9 @@ pub struct LineImage {
     pub line_width: f64,
     /// Pixels of this raster per pixel of the scan.
     pub scale: f64,
+    /// Pixels of this raster per pixel of the page that was cleaned: the scan, unless its lines were so broad that it was
+    /// reduced first.
+    pub page_scale: f64,
     /// How far the ink of lines can be trusted, by place in this raster; lengths are in pixels of the scan.
     pub noise: NoiseMap,
     /// Standard deviation of the blur of a scan's lines, in pixels of this raster; 0 for a clean render, unless it was
@@ -32,7 +35,7 @@ pub struct LineImage {
     pub solid: Mask,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
-    /// The colour of each pixel *of the scan* with the paper's own taken off, and on a dark ground grey for dark ink on
+    /// The colour of each pixel *of the page that was cleaned* with the paper's own taken off, and on a dark ground grey for dark ink on
     /// white; `None` is black ink.
     pub colors: Option<Raster<[u8; 3]>>,
     /// What was decided about the page.
@@ -71,6 +74,12 @@ const LARGEST_SIZE: f64 = 1e4;
 const CORE_BAND: f64 = 0.35;
 
 impl LineImage {
+    /// The same of a scan of which each block of pixels, so many a side, was one of the page.
+    pub(crate) fn of_finer(self, block: usize) -> Self {
+        let broad = self.broad.map(|broad| Box::new(broad.of_finer(block)));
+        Self { scale: self.scale / block as f64, noise: self.noise.of_finer(block), broad, ..self }
+    }
+
     /// Whether the ink of a line, `core` in its middle, runs from one point to another without a break.
     ///
     /// The ink that is missing along the way adds up to the length of the gap, however it lies on the pixels and
@@ -160,7 +169,8 @@ impl LineImage {
                 return broken(format!("the {what} is {size:?} pixels and the ink {:?}", self.ink.size()));
             }
         }
-        let positive = [("line width", self.line_width), ("scale", self.scale)].map(|(what, v)| (what, v, LEAST_SIZE));
+        let positive = [("line width", self.line_width), ("scale", self.scale), ("page scale", self.page_scale)]
+            .map(|(what, v)| (what, v, LEAST_SIZE));
         if !self.noise.is_valid() {
             return broken("the noise has impossible numbers".into());
         }

@@ -10,6 +10,7 @@ mod line_image;
 mod noise;
 mod page;
 mod paper;
+mod reduce;
 mod resample;
 mod runs;
 mod solids;
@@ -24,6 +25,7 @@ pub(crate) use distance::distance;
 pub use line_image::{Decisions, LineImage};
 pub use noise::{Noise, NoiseMap};
 pub(crate) use page::JOINING;
+pub(crate) use reduce::{block, reduced};
 pub(crate) use runs::runs;
 pub(crate) use width::is_ridge;
 
@@ -61,8 +63,11 @@ pub fn clean_until(scan: &Scan, options: &Options, cancel: &Cancel) -> Result<Li
 ///
 /// # Errors
 /// The token's.
-pub(crate) fn clean_drawn(drawn: &Scan, as_it_was: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
-    cleaned(Page::of_drawn(drawn, as_it_was, options.invert), options, cancel)
+pub(crate) fn clean_drawn(drawn: Scan, as_it_was: &Scan, options: &Options, cancel: &Cancel) -> Result<LineImage> {
+    let page = Page::of_drawn(&drawn, as_it_was, options.invert);
+    // Large pages are kept no longer than they are needed.
+    drop(drawn);
+    cleaned(page, options, cancel)
 }
 
 fn cleaned(page: Page, options: &Options, cancel: &Cancel) -> Result<LineImage> {
@@ -110,8 +115,21 @@ fn cleaned(page: Page, options: &Options, cancel: &Cancel) -> Result<LineImage> 
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
     let decisions = page.decisions(threshold);
     let colors = Some(page.colors());
-    let mut image =
-        LineImage { ink, mask, depth, line_width, scale, noise, blur, solids, solid, broad: None, colors, decisions };
+    let mut image = LineImage {
+        ink,
+        mask,
+        depth,
+        line_width,
+        scale,
+        page_scale: scale,
+        noise,
+        blur,
+        solids,
+        solid,
+        broad: None,
+        colors,
+        decisions,
+    };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
 }

@@ -144,6 +144,12 @@ impl NoiseMap {
         self
     }
 
+    /// The map of the same raster where each pixel of the scan stands for a block of a finer one, so many a side.
+    pub(crate) fn of_finer(self, block: usize) -> Self {
+        let finer = |lengths: Raster<f32>| lengths.map(|length| block as f32 * length);
+        Self { across: finer(self.across), blur: finer(self.blur), ..self }
+    }
+
     /// Whether every number is a possible one.
     pub(crate) fn is_valid(&self) -> bool {
         let grids = [&self.across, &self.along, &self.blur];

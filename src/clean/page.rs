@@ -104,13 +104,11 @@ fn inks_of_groups(page: &ColorPage, paper: Paper, noise: &NoiseMap, threshold: T
     let (width, height) = page.strength.size();
     let (mut ink, mut mask) = (Raster::filled(width, height, 0.0), Raster::filled(width, height, false));
     for group in 0..page.groups {
-        let own = Raster::from_fn(
-            width,
-            height,
-            |x, y| {
-                if page.group[(x, y)] == group { page.strength[(x, y)] } else { 0.0 }
-            },
-        );
+        let own = Raster::from_rows(width, height, 0.0, |y, row| {
+            for ((own, &of), &strength) in row.iter_mut().zip(page.group.row(y)).zip(page.strength.row(y)) {
+                *own = if of == group { strength } else { 0.0 };
+            }
+        });
         if group == 0 && !page.has_grey {
             // Grain, and where two colours mix.
             ink = own;

@@ -140,11 +140,14 @@ fn evened(ink: &Raster<f32>, wide: &Mask) -> Raster<f32> {
 }
 
 /// The means of square blocks; those at the right and at the bottom are cut off by the border.
-fn averaged(ink: &Raster<f32>, block: usize) -> Raster<f32> {
+pub(super) fn averaged(ink: &Raster<f32>, block: usize) -> Raster<f32> {
     let (width, height) = ink.size();
-    Raster::from_fn(width.div_ceil(block), height.div_ceil(block), |x, y| {
-        let (columns, rows) = (x * block..width.min((x + 1) * block), y * block..height.min((y + 1) * block));
-        let count = columns.len() * rows.len();
-        rows.map(|y| ink.row(y)[columns.clone()].iter().sum::<f32>()).sum::<f32>() / count as f32
+    Raster::from_rows(width.div_ceil(block), height.div_ceil(block), 0.0, |y, row| {
+        let rows = y * block..height.min((y + 1) * block);
+        for (x, mean) in row.iter_mut().enumerate() {
+            let columns = x * block..width.min((x + 1) * block);
+            let sum = rows.clone().map(|y| ink.row(y)[columns.clone()].iter().sum::<f32>()).sum::<f32>();
+            *mean = sum / (columns.len() * rows.len()) as f32;
+        }
     })
 }

@@ -175,8 +175,10 @@ fn global_levels(ink: &Raster<f32>, floor: f32) -> Option<(f32, f32)> {
 /// The darkest ink within a few pixels of each place, smoothed, and no less than `floor`.
 fn nearby_core(ink: &Raster<f32>, floor: f32) -> Raster<f32> {
     let dilated = grayscale_dilate(&in_bytes(ink), &Structure::square(6));
-    let core = Raster::from_fn(ink.width(), ink.height(), |x, y| {
-        (f32::from(dilated.get_pixel(x as u32, y as u32)[0]) / 255.0).max(floor)
+    let core = Raster::from_rows(ink.width(), ink.height(), 0.0, |y, row| {
+        for (x, core) in row.iter_mut().enumerate() {
+            *core = (f32::from(dilated.get_pixel(x as u32, y as u32)[0]) / 255.0).max(floor);
+        }
     });
     smooth(core, 3.0)
 }

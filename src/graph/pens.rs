@@ -129,18 +129,18 @@ impl<'a> Pens<'a> {
         let image = self.image;
         let normal = if heading.hypot2() > 0.0 { heading.normalize().turn_90() } else { Vec2::new(1.0, 0.0) };
         // Along the line the next pixel may be of another ink, across it is not.
-        let color = self.color_among([-1.0, 0.0, 1.0].map(|k| p + normal * (k * image.scale)).into_iter())?;
+        let color = self.color_among([-1.0, 0.0, 1.0].map(|k| p + normal * (k * image.page_scale)).into_iter())?;
         let beside = |offset: f64| [-offset, offset].map(|offset| image.ink.sample(p + normal * offset));
-        let [inner, outer] = [beside(0.25 * width), beside(0.5 * width + image.scale)];
+        let [inner, outer] = [beside(0.25 * width), beside(0.5 * width + image.page_scale)];
         let middle = image.ink.sample(p);
         let shows_all = inner[0].min(inner[1]) >= FLAT * middle || outer[0].min(outer[1]) <= SHARP * middle;
-        Some(Reading { color, full: shows_all && width >= WIDE * image.scale, length })
+        Some(Reading { color, full: shows_all && width >= WIDE * image.page_scale, length })
     }
 
     /// The colour that the middle of a line of a width had before it was blurred.
     fn unblurred(&self, color: Color, width: f64) -> Color {
         // Of the blur, what the ink was smoothed by is not in the colours.
-        let smoothing = JOINING * self.image.scale;
+        let smoothing = JOINING * self.image.page_scale;
         let blur = (self.image.blur.powi(2) - smoothing.powi(2)).max(0.0).sqrt();
         if blur <= 0.0 {
             return color;
@@ -151,7 +151,7 @@ impl<'a> Pens<'a> {
 
     /// The colour of the pixel with the most ink among those at some places.
     fn color_among(&self, places: impl Iterator<Item = Point>) -> Option<Color> {
-        let pixel = |v: f64| (v / self.image.scale).floor() as i64;
+        let pixel = |v: f64| (v / self.image.page_scale).floor() as i64;
         let pixels = places.filter_map(|p| self.colors.get(pixel(p.x), pixel(p.y)));
         pixels.min_by_key(|rgb| rgb.iter().min().copied()).map(Color)
     }
@@ -160,7 +160,7 @@ impl<'a> Pens<'a> {
     /// of its own on a scan.
     fn color_at(&self, p: Point) -> Option<Color> {
         let steps = if self.is_unsure(&[p]) { 0..=0 } else { -1..=1 };
-        let step = |x: i32, y: i32| Vec2::new(x.into(), y.into()) * self.image.scale;
+        let step = |x: i32, y: i32| Vec2::new(x.into(), y.into()) * self.image.page_scale;
         self.color_among(steps.clone().flat_map(|y| steps.clone().map(move |x| p + step(x, y))))
     }
 

@@ -18,7 +18,6 @@ use crate::cancel::Cancel;
 use crate::error::{Error, Result};
 use crate::load::Scan;
 use crate::raster::Raster;
-use image::{Rgb, RgbImage};
 
 /// How far the blurred edge of a line reaches beyond the pixels that are known to be ink, in pixels.
 const EDGE: i64 = 2;
@@ -64,11 +63,8 @@ pub fn drawn(scan: &Scan, coverage: &Raster<f32>) -> Result<Scan> {
         }
     });
     let shade = |ink: f32| if is_light { ink } else { 1.0 - ink };
-    let rgb = scan.rgb.as_ref().map(|_| {
-        RgbImage::from_fn(width as u32, height as u32, |x, y| {
-            Rgb(ink[(x as usize, y as usize)].map(|ink| (255.0 * shade(ink)).round() as u8))
-        })
-    });
+    let bytes = |ink: [f32; 3]| ink.map(|ink| (255.0 * shade(ink)).round() as u8);
+    let rgb = scan.rgb.as_ref().map(|_| ink.mapped([0; 3], bytes).into_rgb_image());
     Ok(Scan { gray: ink.mapped(0.0, |ink| shade(luma(ink))), rgb, dpi: scan.dpi })
 }
 

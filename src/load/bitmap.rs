@@ -4,7 +4,7 @@ use super::{LoadOptions, Scan, jpeg, resolution, tiff, undecodable};
 use crate::error::Result;
 use crate::raster::Raster;
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel, Rgb, RgbImage};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
 use rayon::prelude::*;
 use std::io::Cursor;
 
@@ -135,18 +135,20 @@ fn scan_buffer<P: Pixel<Subpixel: Unit>>(image: &ImageBuffer<P, Vec<P::Subpixel>
     let (width, height) = (image.width() as usize, image.height() as usize);
     let (samples, channels) = (image.as_raw().as_slice(), usize::from(P::CHANNEL_COUNT));
     let rows = || samples.par_chunks_exact(channels * width.max(1));
+    let row = |y: usize| &samples[y * width * channels..(y + 1) * width * channels];
     let ground = ground::<P>(samples);
-    let gray = Raster::from_rows(width, height, 0.0, |y, row| {
-        let colors = colors::<P>(&samples[y * width * channels..(y + 1) * width * channels], ground);
-        row.iter_mut().zip(colors).for_each(|(gray, color)| *gray = luma(color));
+    let gray = Raster::from_rows(width, height, 0.0, |y, to| {
+        to.iter_mut().zip(colors::<P>(row(y), ground)).for_each(|(gray, color)| *gray = luma(color));
     });
     let colored =
         channels >= 3 && rows().any(|row| colors::<P>(row, ground).any(|color| spread(color) > COLOR_THRESHOLD));
     let byte = |v: f32| (v * 255.0).round() as u8;
     let rgb = colored.then(|| {
-        RgbImage::from_fn(image.width(), image.height(), |x, y| Rgb(over(image.get_pixel(x, y), ground).map(byte)))
+        Raster::from_rows(width, height, [0; 3], |y, to| {
+            to.iter_mut().zip(colors::<P>(row(y), ground)).for_each(|(rgb, color)| *rgb = color.map(byte));
+        })
     });
-    Scan { gray, rgb, dpi }
+    Scan { gray, rgb: rgb.map(Raster::into_rgb_image), dpi }
 }
 
 /// The lightness of what an image with transparency is laid over: white, unless nothing would be seen on white but
@@ -192,7 +194,7 @@ fn spread([r, g, b]: [f32; 3]) -> f32 {
 mod tests {
     use super::*;
     use crate::error::Error;
-    use image::{Luma, LumaA, Rgba};
+    use image::{Luma, LumaA, Rgb, RgbImage, Rgba};
 
     #[test]
     fn alpha_lies_over_white() {

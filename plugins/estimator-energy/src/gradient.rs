@@ -111,6 +111,7 @@ mod tests {
             depth,
             line_width: 3.0,
             scale: 1.0,
+            page_scale: 1.0,
             noise: NoiseMap::even(Noise::default()),
             decisions: Decisions::default(),
             blur: 0.0,

@@ -35,6 +35,7 @@ fn bare(ink: Raster<f32>) -> LineImage {
         depth,
         line_width: 3.0,
         scale: 1.0,
+        page_scale: 1.0,
         noise: NoiseMap::even(Noise::default()),
         decisions: Decisions::default(),
         blur: 0.0,

@@ -27,7 +27,7 @@ pub(in crate::graph) fn free_end(image: &LineImage, lines: &Lines, end: &End) ->
     let ink = |s: f64| image.ink.sample(end.point + heading * s);
     let (edge, pixel) = edge_ahead(ink, end.width);
     let width = unblurred_width(end.width, image.blur);
-    let drawn_in = blurred_cap(image.blur.max(pixel * image.scale), width);
+    let drawn_in = blurred_cap(image.blur.max(pixel * image.page_scale), width);
     // Never past the middle of a short line.
     let half_length = 0.5 * (n as f64 - 1.0) * STEP;
     end.point + heading * (edge + drawn_in - 0.5 * width).max(-half_length + 0.25)
