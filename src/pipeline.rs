@@ -124,7 +124,7 @@ impl Vectorizer {
                 observer.on_ink(scan, &mut coverage)?;
                 self.told(scan, coverage, &observer.cancel())?
             }
-            None => match clean::block(scan, &self.options) {
+            None => match self.block(scan) {
                 1 => self.cleaned(scan, observer)?,
                 block => self.cleaned(&clean::reduced(scan, block), observer)?.of_finer(block),
             },
@@ -132,6 +132,11 @@ impl Vectorizer {
         observer.on_line_image(&mut image)?;
         image.validate()?;
         Ok(image)
+    }
+
+    /// Side of the blocks of pixels to which a scan can be reduced before anything else is done with it.
+    fn block(&self, scan: &Scan) -> usize {
+        if clean::is_large(scan) && !ink::is_plain(scan) { clean::block(scan, &self.options) } else { 1 }
     }
 
     /// The lines of a scan whose ink is told as the options say.

@@ -538,26 +538,3 @@ fn ink_is_chosen_by_its_colour() {
     let wrong = desk.command(&["two.png", "--only", "redish"]).output().unwrap();
     assert_eq!(wrong.status.code(), Some(2));
 }
-
-#[test]
-fn what_is_no_line_drawing_is_traced_with_a_warning() {
-    let desk = Desk::new();
-    // Shaded discs before one another.
-    let image = GrayImage::from_fn(240, 240, |x, y| {
-        let disc = (0..60u32).rev().find(|k| {
-            let (cx, cy) = ((k * 97 % 240) as f64, (k * 61 % 240) as f64);
-            (f64::from(x) - cx).hypot(f64::from(y) - cy) < 12.0 + f64::from(k * 7 % 40)
-        });
-        Luma([disc.map_or(128, |k| (20 + (k * 53 + x / 3 + y / 5) % 215) as u8)])
-    });
-    image.save(desk.path("tones.png")).unwrap();
-    let run = |name: &str| desk.command(&[name, "--ink", "threshold", "-o", "out.svg"]).output().unwrap();
-    let said = String::from_utf8(run("tones.png").stderr).unwrap();
-    assert!(said.contains("looks like no line drawing"), "{said}");
-    assert!(run("drawing.png").stderr.is_empty());
-    let records =
-        desk.command(&["tones.png", "drawing.png", "--ink", "threshold", "-o", "out", "--json"]).output().unwrap();
-    let records = String::from_utf8(records.stdout).unwrap();
-    let [tones, drawing] = records.lines().collect::<Vec<_>>()[..] else { panic!("{records}") };
-    assert!(tones.contains("looks like no line drawing") && !drawing.contains("looks like"), "{records}");
-}

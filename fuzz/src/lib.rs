@@ -3,7 +3,7 @@
 //! `tests/fuzz_corpus.rs` includes this file and replays the corpora, so everything here works on stable Rust.
 
 use fieldtrace::clean::LineImage;
-use fieldtrace::drawing::{Centreline, Drawing};
+use fieldtrace::drawing::{Centreline, Color, Drawing};
 use fieldtrace::field::{PolyVectorField, encode};
 use fieldtrace::hooks::Observer;
 use fieldtrace::load::{LoadOptions, Scan, load_bytes};
@@ -141,6 +141,8 @@ impl Bytes<'_> {
             },
             gap: (how & 128 != 0).then_some(f64::from(what) / 16.0),
             dashes: if how & 128 == 0 { Dashing::Keep } else { Dashing::Join },
+            ignore: if what & 2 == 0 { Vec::new() } else { vec![Color([255, 0, 0])] },
+            ..Options::default()
         }
     }
 

@@ -25,7 +25,7 @@ pub(crate) use distance::distance;
 pub use line_image::{Decisions, LineImage};
 pub use noise::{Noise, NoiseMap};
 pub(crate) use page::JOINING;
-pub(crate) use reduce::{block, reduced};
+pub(crate) use reduce::{block, is_large, reduced};
 pub(crate) use runs::runs;
 pub(crate) use width::is_ridge;
 

@@ -10,7 +10,6 @@ use super::page::{JOINING, Page};
 use super::resample::averaged;
 use super::threshold::Told;
 use super::width::Ridge;
-use crate::ink;
 use crate::load::Scan;
 use crate::options::Options;
 use crate::raster::Raster;
@@ -24,13 +23,18 @@ const FIRST_LOOK: usize = 1000;
 const LEAST_WIDTH: f64 = 5.0;
 const FINEST: f64 = 4.0;
 
-/// Side of the blocks of pixels to which a scan can be reduced: 1 for most.
+/// Whether a scan is so large that it is worth a look whether it can be reduced.
+pub(crate) fn is_large(scan: &Scan) -> bool {
+    scan.gray.data().len() >= LARGE
+}
+
+/// Side of the blocks of pixels to which a scan that is no render can be reduced; 1 where it can not.
 pub(crate) fn block(scan: &Scan, options: &Options) -> usize {
-    let (width, height) = scan.gray.size();
     // The size of specks is told in pixels of the scan.
-    if width * height < LARGE || options.despeckle.is_some() || ink::is_plain(scan) {
+    if options.despeckle.is_some() {
         return 1;
     }
+    let (width, height) = scan.gray.size();
     let step = width.max(height).div_ceil(FIRST_LOOK);
     let look = Scan { gray: averaged(&scan.gray, step), rgb: None, dpi: None };
     let page = Page::of(&look, options.invert);
@@ -90,7 +94,6 @@ mod tests {
         let block = |width, grain| block(&page(width, grain), &Options::default());
         assert_eq!([3.0, 6.0, 12.0].map(|width| block(width, 0.1)), [1, 1, 2]);
         assert!((4..=6).contains(&block(25.0, 0.1)), "{}", block(25.0, 0.1));
-        assert_eq!(block(25.0, 0.0), 1, "a render");
     }
 
     #[test]
