@@ -13,6 +13,7 @@ use fieldtrace::options::{Ink, Options};
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::raster::Raster;
 use kurbo::{ParamCurve, Point, Shape};
+use std::f64::consts::FRAC_PI_8;
 
 const SIDE: usize = 180;
 
@@ -52,7 +53,7 @@ fn farthest(image: &LineImage, drawing: &Drawing) -> (f64, Point) {
             let count = (piece.to_cubic().perimeter(0.5) / 2.0).ceil().max(1.0) as usize;
             for p in (0..=count).map(|k| piece.eval(k as f64 / count as f64)) {
                 let ring =
-                    |reach: f64| (0..16).map(move |k| p + kurbo::Vec2::from_angle(f64::from(k) * 0.3927) * reach);
+                    |reach: f64| (0..16).map(move |k| p + kurbo::Vec2::from_angle(f64::from(k) * FRAC_PI_8) * reach);
                 let reach = (0..60).map(|k| 0.1 * f64::from(k)).find(|reach| ring(reach * width).any(is_ink));
                 let reach = reach.unwrap_or(6.0);
                 if reach > most.0 {

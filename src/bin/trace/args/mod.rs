@@ -65,7 +65,7 @@ pub(crate) enum Command {
     /// Write what the network takes for ink.
     Ink(InkArgs),
     /// Compare traces with the strokes that were drawn.
-    Eval(EvalArgs),
+    Eval(Box<EvalArgs>),
     /// Train the network that predicts the field, or the one that sees ink.
     #[cfg(feature = "train")]
     Train(TrainArgs),
