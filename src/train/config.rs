@@ -183,7 +183,7 @@ impl TrainConfig {
     }
 
     /// The ways in which the data of a field is seen, and the share of each.
-    pub fn views(&self) -> impl Iterator<Item = (View, f64)> {
+    pub fn views(&self) -> impl DoubleEndedIterator<Item = (View, f64)> {
         let clean = 1.0 - self.scans - self.papers;
         [(View::Clean, clean), (View::Scan, self.scans), (View::Paper, self.papers)].into_iter()
     }

@@ -120,7 +120,7 @@ pub(super) fn stream(seed: u64, number: u64) -> ChaCha8Rng {
 pub(super) fn sheet(rng: &mut ChaCha8Rng, source: &Source, config: &TrainConfig) -> Sight {
     sight(rng, source, config, |rng| {
         let mut left = rng.random::<f64>();
-        let drawn = config.views().find(|(_, share)| {
+        let drawn = config.views().rev().find(|(_, share)| {
             left -= share;
             left < 0.0
         });

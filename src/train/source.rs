@@ -123,12 +123,14 @@ pub struct Sight {
 /// Draws until there is a sheet on which cleaning leaves something, no smaller than a crop; the view is drawn anew for each.
 pub fn sight<R: Rng>(rng: &mut R, source: &Source, config: &TrainConfig, view: impl Fn(&mut R) -> View) -> Sight {
     loop {
-        let view = view(rng);
-        let [drawing, other] = [source.drawing(rng, config), source.drawing(rng, config)];
-        let seen = match view {
+        let drawing = source.drawing(rng, config);
+        let seen = match view(rng) {
             View::Clean => clean_sheet(rng, drawing),
             View::Scan => scanned(rng, drawing),
-            View::Paper => on_paper(rng, drawing, &other, config),
+            View::Paper => {
+                let other = source.drawing(rng, config);
+                on_paper(rng, drawing, &other, config)
+            }
         };
         if let Some(sight) = seen.filter(|s| s.ink.width().min(s.ink.height()) >= config.crop) {
             return sight;
