@@ -82,7 +82,7 @@ fn is_current(job: &Job) -> bool {
     matches!((changed(&job.input), changed(&job.output)), (Some(input), Some(output)) if output >= input)
 }
 
-/// Counts junctions, and hands the token on.
+/// Counts junctions, sees whether there is a line drawing at all, and hands the token on.
 struct Count<'a> {
     scan: &'a Scan,
     junctions: usize,

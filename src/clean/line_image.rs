@@ -35,8 +35,8 @@ pub struct LineImage {
     pub solid: Mask,
     /// Lines too broad to be traced beside these, as an image of their own.
     pub broad: Option<Box<LineImage>>,
-    /// The colour of each pixel *of the page that was cleaned* with the paper's own taken off, and on a dark ground grey for dark ink on
-    /// white; `None` is black ink.
+    /// The colour of each pixel *of the page that was cleaned* with the paper's own taken off, and on a dark ground grey for
+    /// dark ink on white; `None` is black ink.
     pub colors: Option<Raster<[u8; 3]>>,
     /// What was decided about the page.
     pub decisions: Decisions,

@@ -26,7 +26,7 @@ pub use line_image::{Decisions, LineImage};
 pub use noise::{Noise, NoiseMap};
 pub(crate) use page::JOINING;
 pub(crate) use reduce::{block, is_large, reduced};
-pub(crate) use runs::runs;
+pub(crate) use runs::{Run, runs};
 pub(crate) use width::is_ridge;
 
 use crate::cancel::Cancel;

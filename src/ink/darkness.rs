@@ -1,6 +1,6 @@
 //! The ink that darkness alone tells, and what it has in common with that of an estimator.
 
-use super::widened;
+use super::{mean_coverage, widened};
 use crate::clean::{LineImage, distance, runs};
 use crate::raster::{Mask, Raster};
 use kurbo::Point;
@@ -64,17 +64,9 @@ impl Darkness {
     /// Fills a coverage of the page where solids are of which it knows the most.
     pub fn complete(&self, coverage: &mut Raster<f32>) {
         let solids = runs(&self.solid);
-        let mut sums = vec![(0usize, 0.0); solids.len()];
-        for run in &solids {
-            let (pixels, covered) = &mut sums[run.region];
-            *pixels += run.to - run.from;
-            *covered += coverage.row(run.y)[run.from..run.to].iter().map(|c| f64::from(*c)).sum::<f64>();
-        }
-        for run in solids {
-            let (pixels, covered) = sums[run.region];
-            if covered >= KNOWN * pixels as f64 {
-                (run.from..run.to).for_each(|x| coverage[(x, run.y)] = 1.0);
-            }
+        let covered = mean_coverage(&solids, coverage);
+        for run in solids.into_iter().filter(|run| covered[run.region] >= KNOWN) {
+            (run.from..run.to).for_each(|x| coverage[(x, run.y)] = 1.0);
         }
     }
 }

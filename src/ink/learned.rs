@@ -1,6 +1,6 @@
 //! Ink as a network sees it, at the size of lines that the network knows.
 
-use super::{InkEstimator, widened};
+use super::{InkEstimator, mean_coverage, widened};
 use crate::cancel::Cancel;
 use crate::clean::runs;
 use crate::error::Result;
@@ -24,7 +24,7 @@ const MOST_PIXELS: f64 = 6e6;
 const INK: [f32; 2] = [0.6, 0.9];
 /// Of solid ink at least this share is seen from near too; empirical, guarded by
 /// `the_network_tells_ink_from_a_shadow_and_squares`.
-const SEEN_NEAR: f32 = 0.2;
+const SEEN_NEAR: f64 = 0.2;
 /// A place has lines where at least so many of its pixels are ink; places are squares of so many pixels a side.
 const PLACE: usize = 32;
 const LEAST_INK: f32 = 16.0;
@@ -123,17 +123,9 @@ fn solids(near: &Raster<f32>, half: &Raster<f32>, quarter: &Raster<f32>) -> Rast
     let [near, half] = [near, half].map(|look| sure(&resized(look.clone(), quarter.size())));
     let mut solid = opened(&most(sure(quarter), &half));
     let parts = runs(&solid.mapped(false, |c| c > 0.0));
-    let mut sums = vec![(0usize, 0.0f32); parts.len()];
-    for run in &parts {
-        let (pixels, seen) = &mut sums[run.region];
-        *pixels += run.to - run.from;
-        *seen += near.row(run.y)[run.from..run.to].iter().sum::<f32>();
-    }
-    for run in parts {
-        let (pixels, seen) = sums[run.region];
-        if seen < SEEN_NEAR * pixels as f32 {
-            (run.from..run.to).for_each(|x| solid[(x, run.y)] = 0.0);
-        }
+    let seen = mean_coverage(&parts, &near);
+    for run in parts.into_iter().filter(|run| seen[run.region] < SEEN_NEAR) {
+        (run.from..run.to).for_each(|x| solid[(x, run.y)] = 0.0);
     }
     solid
 }

@@ -15,6 +15,7 @@ pub use learned::LearnedInk;
 pub(crate) use plain::is_plain;
 
 use crate::cancel::Cancel;
+use crate::clean::Run;
 use crate::error::{Error, Result};
 use crate::load::Scan;
 use crate::raster::Raster;
@@ -93,6 +94,17 @@ fn is_lighter(scan: &Scan, coverage: &Raster<f32>, paper: &Raster<[f32; 3]>) -> 
     let (width, height) = coverage.size();
     let cores = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|&p| coverage[p] > CORE);
     cores.map(|(x, y)| f64::from(luma(color(scan, x, y)) - luma(paper[(x, y)]))).sum::<f64>() > 0.0
+}
+
+/// The mean coverage of each region, by its number, of which these are all runs.
+fn mean_coverage(runs: &[Run], coverage: &Raster<f32>) -> Vec<f64> {
+    let mut sums = vec![(0usize, 0.0); runs.len()];
+    for run in runs {
+        let (pixels, covered) = &mut sums[run.region];
+        *pixels += run.to - run.from;
+        *covered += coverage.row(run.y)[run.from..run.to].iter().map(|c| f64::from(*c)).sum::<f64>();
+    }
+    sums.into_iter().map(|(pixels, covered)| covered / pixels.max(1) as f64).collect()
 }
 
 /// The most of each pixel and those around it.
