@@ -3,7 +3,7 @@
 //! `cargo run --release --example hook`
 
 use fieldtrace::clean::LineImage;
-use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
+use fieldtrace::drawing::{Centreline, Drawing, Segment, Stroke};
 use fieldtrace::field::PolyVectorField;
 use fieldtrace::hooks::Observer;
 use fieldtrace::load::Scan;
@@ -23,7 +23,7 @@ fn picture() -> Scan {
     for (center, half) in [(CENTER, 50.0 * u), (CENTER, 50.0 * v), (Point::new(20.0, 64.0), Vec2::new(4.0, 0.0))] {
         let segments = vec![Segment::Line(Line::new(center - half, center + half))];
         let centreline = Centreline::Path { segments, closed: false };
-        drawing.strokes.push(Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None });
+        drawing.strokes.push(Stroke::new(centreline, 4.0));
     }
     Scan { gray: render(&drawing).map(|ink| 1.0 - ink), rgb: None, dpi: None }
 }

@@ -20,6 +20,8 @@ use std::time::{Duration, Instant};
 pub struct Cancel {
     told: Arc<AtomicBool>,
     limit: Option<Limit>,
+    /// Another one that stops this one.
+    other: Option<Arc<Cancel>>,
 }
 
 /// When to stop by oneself.
@@ -38,7 +40,14 @@ impl Cancel {
     /// One that stops with this one, and also when a time from now has run out.
     #[must_use]
     pub fn within(&self, length: Duration) -> Self {
-        Self { told: Arc::clone(&self.told), limit: Some(Limit { start: Instant::now(), length }) }
+        Self { limit: Some(Limit { start: Instant::now(), length }), ..self.clone() }
+    }
+
+    /// One that stops with this one, and also with another.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        let rest = self.other.as_ref().map_or_else(|| other.clone(), |rest| rest.or(other));
+        Self { other: Some(Arc::new(rest)), ..self.clone() }
     }
 
     /// Polled between and inside the stages; cheap enough for any loop whose turns take microseconds.
@@ -51,7 +60,7 @@ impl Cancel {
         }
         match self.limit {
             Some(Limit { start, length }) if start.elapsed() >= length => Err(Error::TimedOut { limit: length }),
-            _ => Ok(()),
+            _ => self.other.as_ref().map_or(Ok(()), |other| other.check()),
         }
     }
 }
@@ -72,5 +81,19 @@ mod tests {
         for told in [cancel, over, ample] {
             assert!(matches!(told.check(), Err(Error::Cancelled)));
         }
+    }
+
+    #[test]
+    fn any_of_several_stops_what_was_joined() {
+        for stopped in 0..3 {
+            let parts = [0; 3].map(|_| Cancel::default());
+            let joined = parts[0].or(&parts[1]).or(&parts[2]);
+            assert!(joined.check().is_ok());
+            parts[stopped].cancel();
+            assert!(joined.check().is_err());
+            assert_eq!(parts.iter().filter(|part| part.check().is_err()).count(), 1);
+        }
+        let over = Cancel::default().within(Duration::ZERO);
+        assert!(matches!(Cancel::default().or(&over).check(), Err(Error::TimedOut { .. })));
     }
 }

@@ -55,8 +55,22 @@ impl FromStr for Color {
     }
 }
 
+impl serde::Serialize for Color {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> serde::Deserialize<'de> for Color {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = <std::borrow::Cow<str>>::deserialize(deserializer)?;
+        text.parse().map_err(serde::de::Error::custom)
+    }
+}
+
 /// One piece of a stroke. Arcs are circular (`radii.x == radii.y`, no rotation).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Segment {
     /// A straight piece.
     Line(Line),
@@ -110,6 +124,7 @@ fn arc_point(a: &Arc, t: f64) -> Point {
 
 /// The centreline of a stroke.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Centreline {
     /// A chain of pieces, each starting where the one before ends; `closed` chains end where they start.
     Path {
@@ -237,6 +252,7 @@ pub(crate) fn outside_rounded(rect: Rect, radius: f64, p: Point) -> (f64, Vec2) 
 
 /// The pattern of a dashed line, in pixels along the pen's path; round caps reach half a width beyond each dash.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Dashes {
     /// Length of a dash.
     pub dash: f64,
@@ -260,6 +276,7 @@ impl Dashes {
 
 /// A line of the drawing with its pen.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stroke {
     /// Where the pen's centre went.
     pub centreline: Centreline,
@@ -269,9 +286,26 @@ pub struct Stroke {
     pub color: Color,
     /// The pattern of a dashed line.
     pub dashes: Option<Dashes>,
+    /// Widths at even distances along the centreline, from its start to its end, where they were asked for
+    /// ([`crate::options::StrokeWidth::Profile`]); empty where `width` is that of the whole stroke.
+    pub profile: Vec<f64>,
 }
 
 impl Stroke {
+    /// A black line of one width.
+    pub fn new(centreline: Centreline, width: f64) -> Self {
+        Self { centreline, width, color: Color::BLACK, dashes: None, profile: Vec::new() }
+    }
+
+    /// The width at a share of the length, 0 to 1.
+    pub fn width_at(&self, share: f64) -> f64 {
+        let Some(last) = self.profile.len().checked_sub(1) else { return self.width };
+        let at = share.clamp(0.0, 1.0) * last as f64;
+        let before = (at as usize).min(last.saturating_sub(1));
+        let after = (before + 1).min(last);
+        self.profile[before] + (at - before as f64) * (self.profile[after] - self.profile[before])
+    }
+
     /// The same line walked from its end to its start, its pattern where it was.
     pub fn reversed(&self) -> Self {
         let dashes = match &self.centreline {
@@ -279,12 +313,14 @@ impl Stroke {
             // Walked as before.
             Centreline::Circle(_) | Centreline::Dot(_) => self.dashes,
         };
-        Self { centreline: self.centreline.reversed(), dashes, ..*self }
+        let profile = self.profile.iter().rev().copied().collect();
+        Self { centreline: self.centreline.reversed(), dashes, profile, ..*self }
     }
 }
 
 /// A solid region, too wide to be a line; even-odd outline.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fill {
     /// The outline, closed subpaths.
     pub outline: BezPath,
@@ -310,6 +346,7 @@ impl Fill {
 
 /// A vector line drawing over a canvas of `width x height` pixels.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Drawing {
     /// Canvas width in pixels.
     pub width: f64,
@@ -343,6 +380,13 @@ impl Drawing {
         self.strokes.iter().map(|s| s.centreline.to_path().perimeter(1e-3)).sum()
     }
 
+    /// The same drawing elsewhere on its canvas.
+    pub(crate) fn shifted(mut self, by: Vec2) -> Self {
+        self.strokes.iter_mut().for_each(|s| s.centreline = s.centreline.transformed(1.0, by));
+        self.fills.iter_mut().for_each(|f| f.outline.apply_affine(Affine::translate(by)));
+        self
+    }
+
     /// The same drawing on a canvas `scale` times as large.
     pub fn scaled(&self, scale: f64) -> Self {
         let stroke = |s: &Stroke| Stroke {
@@ -350,6 +394,7 @@ impl Drawing {
             width: s.width * scale,
             color: s.color,
             dashes: s.dashes.map(|d| d.scaled(scale)),
+            profile: s.profile.iter().map(|w| w * scale).collect(),
         };
         let fill = |f: &Fill| Fill { outline: Affine::scale(scale) * f.outline.clone(), color: f.color };
         Self {
@@ -381,7 +426,7 @@ mod tests {
     fn scaling_scales_lengths_and_widths() {
         let mut d = Drawing::new(20.0, 10.0);
         let centreline = Centreline::Circle(Circle::new((5.0, 5.0), 3.0));
-        d.strokes.push(Stroke { centreline, width: 1.5, color: Color::BLACK, dashes: None });
+        d.strokes.push(Stroke::new(centreline, 1.5));
         let big = d.scaled(2.0);
         assert!((big.length() - 2.0 * d.length()).abs() < 1e-2);
         assert_eq!((big.width, big.height, big.strokes[0].width), (40.0, 20.0, 3.0));

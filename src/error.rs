@@ -27,7 +27,7 @@ pub enum Error {
         reason: String,
     },
     /// The image claims more pixels than the limit allows.
-    #[error("{input}: {width} x {height} pixels are over the limit of {limit} (raise it with --max-pixels)")]
+    #[error("{input}: {width} x {height} pixels are over the limit of {limit}")]
     TooLarge {
         /// The path as given, or `-`.
         input: String,
@@ -37,6 +37,24 @@ pub enum Error {
         height: u64,
         /// The limit in pixels.
         limit: u64,
+    },
+    /// The input has several pages where one was to be read.
+    #[error("{input}: it has {pages} pages (name one with --page)")]
+    ManyPages {
+        /// The path as given, or `-`.
+        input: String,
+        /// How many there are.
+        pages: usize,
+    },
+    /// The input has fewer pages than the one to be read.
+    #[error("{input}: there is no page {page}: it has {pages} {}", if *pages == 1 { "page" } else { "pages" })]
+    NoSuchPage {
+        /// The path as given, or `-`.
+        input: String,
+        /// The page that was asked for, from 1.
+        page: usize,
+        /// How many there are.
+        pages: usize,
     },
     /// An SVG input has no visible shape.
     #[error("{input}: the SVG has nothing visible")]
@@ -108,6 +126,15 @@ pub enum Error {
         /// The observer's reason.
         reason: String,
     },
+    /// A part of the caller's own, such as an observer or an estimator, failed.
+    #[error("{part} failed")]
+    Caller {
+        /// What failed.
+        part: String,
+        /// Its own error.
+        #[source]
+        cause: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// An option is out of its range.
     #[error("{option}: {reason}")]
     Option {
@@ -146,6 +173,12 @@ pub enum Error {
         /// What the fault said of itself, in one line.
         reason: String,
     },
+    /// There is a file where a result was to be written, and it is no result of this program, or was changed since.
+    #[error("{}: exists and is not, or no longer, what this program wrote", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// A result could not be written.
     #[error("{}: cannot be written", path.display())]
     Write {
@@ -155,6 +188,22 @@ pub enum Error {
         #[source]
         cause: std::io::Error,
     },
+}
+
+impl Error {
+    /// The error of a part of the caller's own, which keeps its cause.
+    ///
+    /// ```
+    /// use fieldtrace::Error;
+    /// use std::error::Error as _;
+    ///
+    /// let refused = std::fs::read("no such file").map_err(|cause| Error::caller("my estimator", cause)).unwrap_err();
+    /// assert_eq!(refused.to_string(), "my estimator failed");
+    /// assert!(refused.source().is_some_and(|cause| cause.is::<std::io::Error>()));
+    /// ```
+    pub fn caller(part: impl Into<String>, cause: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self::Caller { part: part.into(), cause: cause.into() }
+    }
 }
 
 /// Result of the library's fallible functions.

@@ -10,6 +10,37 @@ use crate::load::Scan;
 use crate::raster::Raster;
 use crate::streamline::Streamline;
 
+/// A step of a trace that takes time; see [`crate::pipeline::Vectorizer::reporting`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Ink is told from paper and measured.
+    Clean,
+    /// Directions are estimated.
+    Estimate,
+    /// Streamlines are traced and become a graph.
+    Trace,
+    /// Curves are fitted.
+    Fit,
+}
+
+impl Stage {
+    /// All of them, in the order in which they come; the middle two come twice where broad lines are traced apart.
+    pub const ALL: [Self; 4] = [Self::Clean, Self::Estimate, Self::Trace, Self::Fit];
+}
+
+/// In a word.
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Clean => "ink",
+            Self::Estimate => "directions",
+            Self::Trace => "strokes",
+            Self::Fit => "curves",
+        })
+    }
+}
+
 /// Sees each stage's result as it passes and may change it in place; an error stops the trace.
 ///
 /// Every method does nothing unless overridden. To refuse a result, return

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 
 /// How ink is told from paper.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Threshold {
     /// Chosen from the image, locally where the light is uneven.
     #[default]
@@ -15,6 +16,7 @@ pub enum Threshold {
 
 /// How the ink of the drawing is told from everything else on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Ink {
     /// As with [`Ink::Threshold`] on a clean render, whose paper has nothing else on it, and where both tell the same ink; else
     /// as with [`Ink::Learned`].
@@ -28,6 +30,7 @@ pub enum Ink {
 
 /// Whether the drawing is light on dark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Invert {
     /// Decided from the image.
     #[default]
@@ -40,9 +43,12 @@ pub enum Invert {
 
 /// The width that is written for a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum StrokeWidth {
-    /// Measured for each stroke.
+    /// That of the stroke's pen: strokes whose measured widths may be those of one pen share it.
     #[default]
+    Pens,
+    /// Measured for each stroke.
     Measured,
     /// One width for all: the drawing's median.
     Uniform,
@@ -50,10 +56,13 @@ pub enum StrokeWidth {
     Fixed(f64),
     /// Strokes are filled outlines, as wide at each place as the ink is.
     Outline,
+    /// Measured all along each stroke ([`crate::Stroke::profile`]); beside it the mean.
+    Profile,
 }
 
 /// What becomes of dashed lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Dashing {
     /// Every dash is a stroke.
     #[default]
@@ -62,8 +71,39 @@ pub enum Dashing {
     Join,
 }
 
+/// Up to which width ink is a line; wider ink is a solid region.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum MaxWidth {
+    /// Decided from the image: what is long and even is a line.
+    #[default]
+    Auto,
+    /// This many pixels of the input.
+    Pixels(f64),
+    /// This many millimetres; the input has to know its resolution.
+    Millimetres(f64),
+    /// Any width: nothing is a solid region.
+    Unlimited,
+}
+
+/// What becomes of solid regions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Solids {
+    /// They are filled.
+    #[default]
+    Fill,
+    /// A stroke goes along their outlines.
+    Outline,
+    /// Strokes beside each other cover them, for machines that hold a pen.
+    Hatch,
+    /// They are left out.
+    Drop,
+}
+
 /// What a trace may be told. The defaults are meant to do well on any drawing.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, rename_all = "kebab-case"))]
 pub struct Options {
     /// Fit tolerance in line widths: how far a fitted curve may leave the measured centreline. Smaller
     /// follows the ink more closely and gives more segments. In `[0.01, 2]`.
@@ -80,6 +120,10 @@ pub struct Options {
     pub invert: Invert,
     /// The width written for each stroke.
     pub width: StrokeWidth,
+    /// Up to which width ink is a line.
+    pub max_width: MaxWidth,
+    /// What becomes of solid regions.
+    pub solids: Solids,
     /// Breaks in a line of at most this many line widths of paper are bridged, where direction and distance agree.
     /// `None` bridges what a pencil leaves on a scan, and nothing on a clean render. In `[0, 100]`.
     pub gap: Option<f64>,
@@ -103,7 +147,9 @@ impl Default for Options {
             ink: Ink::Auto,
             threshold: Threshold::Auto,
             invert: Invert::Auto,
-            width: StrokeWidth::Measured,
+            width: StrokeWidth::Pens,
+            max_width: MaxWidth::Auto,
+            solids: Solids::Fill,
             gap: None,
             dashes: Dashing::Keep,
             only: Vec::new(),
@@ -141,6 +187,31 @@ impl Options {
         (self.only.is_empty() || among(&self.only)) && !among(&self.ignore)
     }
 
+    /// The same options with lengths in pixels of an input of a resolution.
+    ///
+    /// # Errors
+    /// [`Error::Option`] where a length is in millimetres and the resolution is not known.
+    pub(crate) fn in_pixels(&self, dpi: Option<f64>) -> Result<Self> {
+        let max_width = match (self.max_width, dpi) {
+            (MaxWidth::Millimetres(mm), Some(dpi)) => MaxWidth::Pixels(mm * dpi / 25.4),
+            (MaxWidth::Millimetres(_), None) => {
+                let reason = "millimetres need a resolution, which the input does not tell".into();
+                return Err(Error::Option { option: "max-width", reason });
+            }
+            (other, _) => other,
+        };
+        Ok(Self { max_width, ..self.clone() })
+    }
+
+    /// The same options for an input of which blocks of pixels have become one.
+    pub(crate) fn reduced(&self, block: usize) -> Self {
+        let max_width = match self.max_width {
+            MaxWidth::Pixels(width) => MaxWidth::Pixels(width / block as f64),
+            other => other,
+        };
+        Self { max_width, ..self.clone() }
+    }
+
     /// Checks every range.
     ///
     /// # Errors
@@ -156,6 +227,9 @@ impl Options {
         within("color-tolerance", self.color_tolerance, 0.0, 1.0)?;
         if let Some(gap) = self.gap {
             within("gap", gap, 0.0, 100.0)?;
+        }
+        if let MaxWidth::Pixels(width) | MaxWidth::Millimetres(width) = self.max_width {
+            within("max-width", width, 0.001, 100_000.0)?;
         }
         if let Threshold::Fixed(t) = self.threshold {
             within("threshold", t, 0.001, 0.999)?;

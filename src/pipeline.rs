@@ -7,12 +7,29 @@ use crate::error::{Error, Result};
 use crate::estimate::FieldEstimator;
 use crate::field::{FrameField, PolyVectorField};
 use crate::graph::{Passes, StrokeGraph, Work};
-use crate::hooks::Observer;
+use crate::hooks::{Observer, Stage};
 use crate::ink::{InkEstimator, LearnedInk};
 use crate::load::Scan;
 use crate::options::{Ink, Options};
 use crate::raster::Raster;
 use crate::{fit, graph, ink, streamline};
+
+/// Traces an image; the whole library in one call.
+///
+/// ```
+/// let image = image::open("samples/kettle.png")?;
+/// let drawing = fieldtrace::trace(&image, &fieldtrace::Options::default())?;
+/// assert!(drawing.strokes.len() > 5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// To trace many, make one [`Vectorizer`], which reads the network's weights once.
+///
+/// # Errors
+/// [`Error::Option`] when an option is out of its range.
+pub fn trace(image: impl Into<Scan>, options: &Options) -> Result<Drawing> {
+    Vectorizer::new(options.clone())?.trace(&image.into())
+}
 
 /// Traces scans under one set of options and one estimator.
 pub struct Vectorizer {
@@ -20,7 +37,12 @@ pub struct Vectorizer {
     ink: Box<dyn InkEstimator>,
     estimator: Box<dyn FieldEstimator>,
     passes: Passes,
+    cancel: Cancel,
+    report: Option<Box<Report>>,
 }
+
+/// Told of each stage as it begins.
+type Report = dyn Fn(Stage) + Send + Sync;
 
 impl Vectorizer {
     /// A vectorizer with the default estimator.
@@ -37,7 +59,8 @@ impl Vectorizer {
     /// [`Error::Option`] when an option is out of its range.
     pub fn with(options: Options, estimator: Box<dyn FieldEstimator>) -> Result<Self> {
         options.validate()?;
-        Ok(Self { options, ink: Box::new(LearnedInk::default()), estimator, passes: Passes::default() })
+        let (ink, passes) = (Box::new(LearnedInk::default()), Passes::default());
+        Ok(Self { options, ink, estimator, passes, cancel: Cancel::default(), report: None })
     }
 
     /// The same with a source of ink, which is asked for that of every page: [`Options::ink`] becomes [`Ink::Learned`].
@@ -52,12 +75,29 @@ impl Vectorizer {
         Self { estimator: Box::new(estimator), ..self }
     }
 
+    /// The same, but everything it does stops when a token says so.
+    #[must_use]
+    pub fn cancelled_by(self, cancel: Cancel) -> Self {
+        Self { cancel, ..self }
+    }
+
+    /// The same, but a function is told of each stage as it begins.
+    #[must_use]
+    pub fn reporting(self, report: impl Fn(Stage) + Send + Sync + 'static) -> Self {
+        Self { report: Some(Box::new(report)), ..self }
+    }
+
     /// The same without one of the passes between streamlines and graph, to see what it is worth.
     ///
     /// # Errors
     /// [`Error::Option`] when no pass of [`graph::passes()`] has the name.
     pub fn without(self, pass: &str) -> Result<Self> {
         Ok(Self { passes: self.passes.without(pass)?, ..self })
+    }
+
+    /// The name of the source of fields.
+    pub fn estimator_name(&self) -> &str {
+        self.estimator.name()
     }
 
     /// The options.
@@ -87,7 +127,7 @@ impl Vectorizer {
     /// # Errors
     /// Whatever the estimator or the observer says.
     pub fn graph(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<StrokeGraph> {
-        let cancel = observer.cancel();
+        let cancel = self.token(observer);
         let image = self.line_image(scan, None, observer)?;
         self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)
     }
@@ -97,7 +137,7 @@ impl Vectorizer {
     /// # Errors
     /// [`Error::InkSize`] when the map's size is not the scan's; whatever the estimator or the observer says.
     pub fn trace_with_ink(&self, scan: &Scan, coverage: &Raster<f32>, observer: &mut dyn Observer) -> Result<Drawing> {
-        let cancel = observer.cancel();
+        let cancel = self.token(observer);
         let image = self.line_image(scan, Some(coverage), observer)?;
         let graph = self.follow(scan, &image, &|image| self.estimate(image, &cancel), observer)?;
         self.draw(&graph, observer)
@@ -108,7 +148,17 @@ impl Vectorizer {
     /// # Errors
     /// Whatever the estimator of ink says.
     pub fn ink(&self, scan: &Scan) -> Result<Raster<f32>> {
-        self.ink.estimate(scan)
+        self.ink.estimate_until(scan, &self.cancel)
+    }
+
+    /// What stops the work: the vectorizer's own token and the observer's.
+    fn token(&self, observer: &dyn Observer) -> Cancel {
+        self.cancel.or(&observer.cancel())
+    }
+
+    /// Tells that a stage begins.
+    fn begin(&self, stage: Stage) {
+        self.report.iter().for_each(|report| report(stage));
     }
 
     /// The lines of a scan, as the observer left them; the caller may know its ink.
@@ -118,15 +168,20 @@ impl Vectorizer {
         coverage: Option<&Raster<f32>>,
         observer: &mut dyn Observer,
     ) -> Result<LineImage> {
+        self.begin(Stage::Clean);
+        let options = &self.options.in_pixels(scan.dpi)?;
         let mut image = match coverage {
             Some(coverage) => {
                 let mut coverage = coverage.clone();
                 observer.on_ink(scan, &mut coverage)?;
-                self.told(scan, coverage, &observer.cancel())?
+                self.told(scan, coverage, options, &self.token(observer))?
             }
             None => match self.block(scan) {
-                1 => self.cleaned(scan, observer)?,
-                block => self.cleaned(&clean::reduced(scan, block), observer)?.of_finer(block),
+                1 => self.cleaned(scan, options, observer)?,
+                block => {
+                    let options = options.reduced(block);
+                    self.cleaned(&clean::reduced(scan, block), &options, observer)?.of_finer(block)
+                }
             },
         };
         observer.on_line_image(&mut image)?;
@@ -140,11 +195,11 @@ impl Vectorizer {
     }
 
     /// The lines of a scan whose ink is told as the options say.
-    fn cleaned(&self, scan: &Scan, observer: &mut dyn Observer) -> Result<LineImage> {
-        let cancel = observer.cancel();
+    fn cleaned(&self, scan: &Scan, options: &Options, observer: &mut dyn Observer) -> Result<LineImage> {
+        let cancel = self.token(observer);
         let by_threshold = match self.options.ink {
             Ink::Learned => None,
-            Ink::Auto | Ink::Threshold => Some(clean::clean_until(scan, &self.options, &cancel)?),
+            Ink::Auto | Ink::Threshold => Some(clean::clean_until(scan, options, &cancel)?),
         };
         let is_render = |image: &LineImage| image.noise.is_sure() && ink::is_plain(scan);
         let by_threshold = match by_threshold {
@@ -161,14 +216,14 @@ impl Vectorizer {
         {
             return Ok(image);
         }
-        self.told(scan, coverage, &cancel)
+        self.told(scan, coverage, options, &cancel)
     }
 
     /// The lines of a scan whose ink is known.
-    fn told(&self, scan: &Scan, coverage: Raster<f32>, cancel: &Cancel) -> Result<LineImage> {
+    fn told(&self, scan: &Scan, coverage: Raster<f32>, options: &Options, cancel: &Cancel) -> Result<LineImage> {
         let drawn = ink::drawn(scan, &coverage)?;
         drop(coverage);
-        clean::clean_drawn(drawn, scan, &self.options, cancel)
+        clean::clean_drawn(drawn, scan, options, cancel)
     }
 
     /// The drawing of a stroke graph, be it traced, read or corrected; of the colours that the options take.
@@ -176,7 +231,8 @@ impl Vectorizer {
     /// # Errors
     /// Whatever the observer says of the drawing; it sees no other stage.
     pub fn draw(&self, graph: &StrokeGraph, observer: &mut dyn Observer) -> Result<Drawing> {
-        let mut drawing = fit::fit(graph, &self.options, &observer.cancel())?;
+        self.begin(Stage::Fit);
+        let mut drawing = fit::fit(graph, &self.options, &self.token(observer))?;
         drawing.strokes.retain(|stroke| self.options.takes(stroke.color));
         drawing.fills.retain(|fill| self.options.takes(fill.color));
         observer.on_drawing(&mut drawing)?;
@@ -207,7 +263,7 @@ impl Vectorizer {
     pub fn field(&self, scan: &Scan) -> Result<PolyVectorField> {
         let image = self.line_image(scan, None, &mut ())?;
         let (width, height) = scan.gray.size();
-        let cancel = Cancel::default();
+        let cancel = self.token(&());
         let mut field = self.estimate(&image, &cancel)?.resized(width, height);
         if let Some(broad) = &image.broad {
             field.fill_from(&self.estimate(broad, &cancel)?.resized(width, height));
@@ -216,6 +272,7 @@ impl Vectorizer {
     }
 
     fn estimate(&self, image: &LineImage, cancel: &Cancel) -> Result<PolyVectorField> {
+        self.begin(Stage::Estimate);
         let field = self.estimator.estimate_until(image, cancel)?;
         same_size(&field, &image.ink)?;
         Ok(field)
@@ -244,7 +301,8 @@ impl Vectorizer {
     fn layer(&self, image: &LineImage, mut field: PolyVectorField, observer: &mut dyn Observer) -> Result<StrokeGraph> {
         observer.on_field(image, &mut field)?;
         same_size(&field, &image.ink)?;
-        let cancel = observer.cancel();
+        self.begin(Stage::Trace);
+        let cancel = self.token(observer);
         let frames = FrameField::new(field);
         let mut streamlines = Vec::new();
         for mut streamline in streamline::trace(image, &frames, &cancel)? {

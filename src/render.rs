@@ -71,7 +71,7 @@ mod tests {
 
     fn drawing(centreline: Centreline, width: f64) -> Drawing {
         let mut drawing = Drawing::new(40.0, 30.0);
-        drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
+        drawing.strokes.push(Stroke::new(centreline, width));
         drawing
     }
 

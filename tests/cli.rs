@@ -1,6 +1,6 @@
 //! The program driven as a user would.
 
-use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
+use fieldtrace::drawing::{Centreline, Drawing, Segment, Stroke};
 use fieldtrace::render::render;
 use image::{GrayImage, Luma};
 use kurbo::{Circle, Line, Point};
@@ -111,8 +111,7 @@ impl Run {
 
 fn drawing() -> Drawing {
     let mut drawing = Drawing::new(120.0, 90.0);
-    let mut add =
-        |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
+    let mut add = |centreline, width| drawing.strokes.push(Stroke::new(centreline, width));
     let line = |a, b| Centreline::Path { segments: vec![Segment::Line(Line::new(a, b))], closed: false };
     add(line((10.0, 10.0), (70.0, 60.0)), 3.0);
     add(line((70.0, 10.0), (10.0, 60.0)), 3.0);
@@ -154,10 +153,9 @@ fn standard_input_and_output_serve() {
     let png = fs::read(desk.path("drawing.png")).unwrap();
     let piped = desk.trace_with_input(&["-"], &png);
     let text = String::from_utf8(piped.done().stdout.clone()).unwrap();
-    assert_eq!(
-        text.replace('\n', ""),
-        desk.read("drawing.svg").replace("<title>drawing.png</title>", "").replace('\n', "")
-    );
+    // The checksum is over the title too.
+    let body = |svg: &str| svg.split("</metadata>").nth(1).unwrap().to_string();
+    assert_eq!(body(&text), body(&desk.read("drawing.svg")));
     assert_eq!(desk.trace(&["drawing.png", "-o", "-"]).done().stdout, desk.read("drawing.svg").into_bytes());
     desk.trace_with_input(&["-", "-o", "c.svg"], &png).done();
     assert_eq!(desk.read("c.svg"), text);
@@ -212,7 +210,7 @@ fn verbose_tells_the_stages() {
 #[test]
 fn every_option_is_taken() {
     let desk = Desk::new();
-    let all: [&[&str]; 16] = [
+    let all: [&[&str]; 30] = [
         &["--detail", "0.3"],
         &["--min-length", "2"],
         &["--despeckle", "4"],
@@ -221,7 +219,21 @@ fn every_option_is_taken() {
         &["--invert", "auto"],
         &["--invert", "yes"],
         &["--invert", "no"],
+        &["--width", "pens"],
         &["--width", "measured"],
+        &["--width", "outline"],
+        &["--width", "profile"],
+        &["--max-width", "none"],
+        &["--max-width", "20"],
+        &["--max-width", "2mm", "--dpi", "100"],
+        &["--solids", "outline"],
+        &["--solids", "hatch"],
+        &["--solids", "drop"],
+        &["--units", "mm", "--dpi", "100"],
+        &["--shapes", "path"],
+        &["--curves", "lines", "--tolerance", "0.2"],
+        &["--crop", "0,0,60,60"],
+        &["--format", "svg"],
         &["--width", "uniform"],
         &["--width", "2.5"],
         &["--precision", "0"],
@@ -341,10 +353,13 @@ fn a_file_with_the_name_of_a_subcommand_is_reached_by_its_path() {
 #[test]
 fn wrong_usage_ends_with_two() {
     let desk = Desk::new();
-    let cases: [(&[&str], &str); 21] = [
-        (&[], "<IN>"),
+    let cases: [(&[&str], &str); 24] = [
+        (&[], "Usage: trace"),
         (&["--no-such-flag", "drawing.png"], "--no-such-flag"),
-        (&["drawing.png", "blank.png"], "-o DIR"),
+        (&["drawing.png", "--format", "dwg"], "svg, svgz, dxf"),
+        (&["drawing.png", "--max-width", "wide"], "neither auto, none"),
+        (&["drawing.png", "--solids", "melt"], "fill, outline, hatch, drop"),
+        (&["feild", "drawing.png"], "feild: no such file; the subcommand is called field"),
         (&["drawing.png", "--detail", "7"], "--detail: 7 is not between 0.01 and 2"),
         (&["drawing.png", "--detail", "much"], "not a number"),
         (&["drawing.png", "--detail", "NaN"], "not a number"),
@@ -354,7 +369,7 @@ fn wrong_usage_ends_with_two() {
         (&["drawing.png", "--threshold", "dark"], "neither auto nor a number"),
         (&["drawing.png", "--invert", "maybe"], "not one of auto, yes, no"),
         (&["drawing.png", "--width", "0"], "--width: 0 is not between"),
-        (&["drawing.png", "--width", "thick"], "neither measured, uniform, outline nor a number"),
+        (&["drawing.png", "--width", "thick"], "neither pens, measured"),
         (&["drawing.png", "--gap", "wide"], "neither auto nor a number"),
         (&["drawing.png", "--gap", "-1"], "--gap: -1 is not between 0 and 100"),
         (&["drawing.png", "--dashes", "maybe"], "not one of keep, join"),
@@ -383,8 +398,8 @@ fn the_input_is_not_overwritten() {
 #[test]
 fn other_formats_are_refused() {
     let desk = Desk::new();
-    desk.trace(&["drawing.png", "-o", "out.PNG"]).wrong_usage("out.PNG: the output is SVG, not png");
-    desk.trace(&["drawing.png", "-o", "out.dxf"]).wrong_usage("not dxf");
+    desk.trace(&["drawing.png", "-o", "out.PNG"]).wrong_usage("out.PNG: png is not among the kinds of output");
+    desk.trace(&["drawing.png", "-o", "out.dwg"]).wrong_usage("dwg is not among");
 }
 
 #[test]
@@ -430,7 +445,8 @@ fn an_output_that_cannot_be_written_is_named() {
     let mut permissions = fs::metadata(desk.path("old.svg")).unwrap().permissions();
     permissions.set_readonly(true);
     fs::set_permissions(desk.path("old.svg"), permissions).unwrap();
-    desk.trace(&["drawing.png", "-o", "old.svg"]).failed(&["old.svg: cannot be written: it is read-only"]);
+    desk.trace(&["drawing.png", "-o", "old.svg"]).failed(&["old.svg: exists"]);
+    desk.trace(&["drawing.png", "-o", "old.svg", "--force"]).failed(&["old.svg: cannot be written: it is read-only"]);
     assert_eq!(desk.read("old.svg"), "old");
     assert_eq!(desk.names(), ["blank.png", "drawing.png", "folder.svg", "old.svg"]);
 }
@@ -498,7 +514,7 @@ fn a_graph_is_written_and_traced_on() {
     desk.trace(&["drawing.png", "-o", "b.json"]).done();
     assert_eq!(desk.read("a.json"), desk.read("b.json"));
     desk.trace(&["a.json", "-o", "c.svg"]).done();
-    let body = |name: &str| desk.read(name).split("</title>").nth(1).unwrap().to_string();
+    let body = |name: &str| desk.read(name).split("</metadata>").nth(1).unwrap().to_string();
     assert_eq!(body("a.svg"), body("c.svg"));
     let piped = desk.trace_with_input(&["-", "-o", "-"], desk.read("a.json").as_bytes());
     assert!(String::from_utf8(piped.done().stdout.clone()).unwrap().contains("</svg>"));
@@ -512,6 +528,122 @@ fn a_graph_is_written_and_traced_on() {
     fs::write(desk.path("cut.json"), &desk.read("a.json")[..300]).unwrap();
     desk.trace(&["cut.json", "-o", "e.svg"]).failed(&["cut.json: line "]);
     assert!(!desk.path("e.svg").exists() && !desk.path("look").exists());
+}
+
+#[test]
+fn every_format_is_written_by_its_extension_and_by_its_name() {
+    let desk = Desk::new();
+    let begins: [(&str, &[u8]); 7] = [
+        ("svg", b"<svg"),
+        ("svgz", b"\x1f\x8b"),
+        ("dxf", b"999\n{\"program\""),
+        ("pdf", b"%PDF-"),
+        ("geojson", b"{\"type\":\"FeatureCollection\""),
+        ("csv", b"stroke,x,y,width,color\n"),
+        ("json", b"{\n\"format\":\"fieldtrace-graph\""),
+    ];
+    for (format, begin) in begins {
+        let [by_extension, by_name] = [format!("out.{format}"), format!("named-{format}")];
+        desk.trace(&["drawing.png", "-o", &by_extension]).done();
+        desk.trace(&["drawing.png", "-o", &by_name, "--format", format]).done();
+        let [bytes, named] = [&by_extension, &by_name].map(|name| fs::read(desk.path(name)).unwrap());
+        assert!(bytes.starts_with(begin), "{format}: {:?}", String::from_utf8_lossy(&bytes[..40]));
+        assert_eq!(bytes, named, "{format}");
+        desk.trace(&["drawing.png", "--format", format]).done();
+        assert!(desk.path("drawing.png").with_extension(format).exists());
+    }
+}
+
+#[test]
+fn only_untouched_outputs_are_overwritten() {
+    let desk = Desk::new();
+    for output in ["out.svg", "out.dxf", "out.pdf", "out.geojson", "out.svgz", "out.json"] {
+        fs::write(desk.path(output), "somebody's own").unwrap();
+        desk.trace(&["drawing.png", "-o", output]).failed(&[output, "exists", "--force"]);
+        assert_eq!(desk.read(output), "somebody's own");
+        desk.trace(&["drawing.png", "-o", output, "--force"]).done();
+        desk.trace(&["drawing.png", "-o", output, "--detail", "0.2"]).done();
+    }
+    let edited = desk.read("out.svg").replace("stroke=\"#", "stroke=\"#0");
+    fs::write(desk.path("out.svg"), &edited).unwrap();
+    desk.trace(&["drawing.png", "-o", "out.svg"]).failed(&["out.svg: exists and is not, or no longer"]);
+    assert_eq!(desk.read("out.svg"), edited);
+}
+
+#[test]
+fn an_output_tells_program_input_and_options() {
+    let desk = Desk::new();
+    desk.trace(&["drawing.png", "-o", "out.svg", "--detail", "0.25"]).done();
+    let svg = desk.read("out.svg");
+    let text = svg.split("<metadata>").nth(1).unwrap().split("</metadata>").next().unwrap();
+    let origin: serde_json::Value = serde_json::from_str(text).unwrap();
+    assert_eq!(origin["program"], concat!("fieldtrace ", env!("CARGO_PKG_VERSION")));
+    assert!(origin["input"].as_str().unwrap().starts_with("sha256:"));
+    assert_eq!(origin["options"]["trace"]["detail"], 0.25);
+}
+
+#[test]
+fn pages_get_an_output_each() {
+    let desk = Desk::new();
+    let gray = image::open(desk.path("drawing.png")).unwrap().to_luma8();
+    let mut tiff = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut tiff).unwrap();
+    for _ in 0..3 {
+        encoder.write_image::<tiff::encoder::colortype::Gray8>(gray.width(), gray.height(), gray.as_raw()).unwrap();
+    }
+    fs::write(desk.path("book.tif"), tiff.into_inner()).unwrap();
+    let run = desk.trace(&["book.tif"]);
+    assert!(run.done().stderr.contains("3 pages, to book-1.svg to book-3.svg"), "{}", run.stderr);
+    assert!(!desk.path("book.svg").exists());
+    let body = |name: &str| desk.read(name).split("</metadata>").nth(1).unwrap().to_string();
+    assert_eq!(body("book-1.svg"), body("book-3.svg"));
+    desk.trace(&["book.tif", "--page", "2", "-o", "two.svg"]).done();
+    assert_eq!(body("two.svg"), body("book-2.svg"));
+    desk.trace(&["book.tif", "--page", "4"]).failed(&["book.tif", "3 pages"]);
+    desk.trace(&["book.tif", "-o", "-"]).wrong_usage("--page");
+    desk.trace(&["book.tif", "-o", "out/"]).done();
+    desk.trace(&["book.tif", "-o", "out/", "--json"]).done();
+    assert!(desk.path("out/book-2.svg").exists());
+}
+
+#[test]
+fn an_svg_keeps_its_units_and_its_view_box() {
+    let desk = Desk::new();
+    let shapes = r##"<path d="M0 0L150 60" stroke="#c00" stroke-width="4"/>"##;
+    for (size, view) in [
+        ("width=\"100mm\" height=\"50mm\"", "-10 -5 200 100"),
+        ("width=\"300\" height=\"300\"", "-10 -5 200 100"),
+        ("", "-10 -5 200 100"),
+    ] {
+        let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size} viewBox=\"{view}\">{shapes}</svg>");
+        fs::write(desk.path("in.svg"), svg).unwrap();
+        desk.trace(&["in.svg", "-o", "out.svg"]).done();
+        let out = desk.read("out.svg");
+        assert!(out.contains(&format!("viewBox=\"{view}\"")), "{out}");
+        assert!(size.split(' ').all(|attribute| out.contains(attribute)), "{out}");
+        let number = |name: &str| -> f64 {
+            out.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+        };
+        let (ends, way) = ([number("x1"), number("y1"), number("x2"), number("y2")], 2.5);
+        assert!((ends[0].min(ends[2]) - 0.0).abs() < way && (ends[0].max(ends[2]) - 150.0).abs() < way, "{ends:?}");
+        assert!((ends[1].min(ends[3]) - 0.0).abs() < way && (ends[1].max(ends[3]) - 60.0).abs() < way, "{ends:?}");
+        assert!((number("stroke-width") - 4.0).abs() < 0.2);
+    }
+}
+
+#[test]
+fn shells_and_readers_are_told_of_the_command() {
+    let desk = Desk::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = String::from_utf8(desk.trace(&["completions", shell]).done().stdout.clone()).unwrap();
+        assert!(text.contains("max-width"), "{shell}");
+    }
+    let page = String::from_utf8(desk.trace(&["man"]).done().stdout.clone()).unwrap();
+    assert!(page.contains(".TH trace 1") && page.contains("max\\-width"));
+    assert!(String::from_utf8(desk.trace(&["help"]).done().stdout.clone()).unwrap().contains("Usage: trace"));
+    if !cfg!(feature = "train") {
+        desk.trace(&["train", "-o", "run"]).wrong_usage("--features train");
+    }
 }
 
 #[test]

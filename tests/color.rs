@@ -10,7 +10,7 @@ use fieldtrace::drawing::{Color, Drawing, Fill, Stroke};
 use fieldtrace::load::Scan;
 use fieldtrace::options::{Ink, Options};
 use fieldtrace::raster::Raster;
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use image::{Rgb, RgbImage};
 use kurbo::{Circle, Point, Shape};
 
@@ -125,7 +125,7 @@ fn edges_make_no_colours_and_layers_are_few() {
         });
         let truth = sheet(96, 96, spokes.collect());
         let result = trace(&color_scan(&truth, WHITE));
-        let svg = to_svg(&result, &SvgOptions::default());
+        let svg = to_svg(&result, &WriteOptions::default());
         let layers = svg.matches("inkscape:groupmode=\"layer\"").count();
         ensure(layers == INKS.len(), || {
             format!("{layers} layers of {:?}", result.strokes.iter().map(|s| s.color).collect::<Vec<_>>())

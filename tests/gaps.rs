@@ -12,7 +12,7 @@ use fieldtrace::options::{Dashing, Options};
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::render::render;
 use fieldtrace::write::graph_json::{from_json, to_json};
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use kurbo::{BezPath, ParamCurve, ParamCurveArclen, Point, RoundedRect, Shape, Vec2};
 
 const CENTER: Point = Point::new(80.3, 79.8);
@@ -263,7 +263,7 @@ fn a_pattern_survives_the_way_through_files() {
     let read = from_json("graph.json", to_json(&graph).as_bytes()).unwrap();
     let drawing = vectorizer.draw(&read, &mut ()).unwrap();
     assert!(common_ink(&truth, &drawing) > 0.85, "{:?}", drawing.strokes);
-    let svg = to_svg(&drawing, &SvgOptions::default());
+    let svg = to_svg(&drawing, &WriteOptions::default());
     let tree = usvg::Tree::from_str(&svg, &usvg::Options::default()).unwrap();
     let mut pixmap = tiny_skia::Pixmap::new(160, 160).unwrap();
     resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixmap.as_mut());

@@ -12,7 +12,7 @@ use fieldtrace::load::{LoadOptions, Scan, load};
 use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::write::graph_json::{from_json, is_json, to_json};
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use kurbo::Point;
 use serde_json::{Value, json};
 
@@ -59,7 +59,7 @@ fn round_trip(scan: &Scan) -> Result<(), String> {
 fn a_graph_that_nobody_changed_gives_the_same_drawing() {
     let mut cases: Vec<(String, Scan)> = ["leaf.jpg", "kettle.png", "boat.png", "plan.svg"]
         .map(|name| {
-            let options = LoadOptions { dpi: Some(96.0), ..LoadOptions::default() };
+            let options = LoadOptions { dpi: Some(96.0.into()), ..LoadOptions::default() };
             (name.to_string(), load(format!("samples/{name}").as_ref(), &options).unwrap().scan)
         })
         .into();
@@ -179,7 +179,7 @@ fn the_example_of_the_documentation_is_a_graph() {
     assert_eq!(kinds, [JunctionKind::FreeEnd, JunctionKind::Tee]);
     let drawing = draw(&graph);
     assert_eq!((drawing.strokes.len(), drawing.fills.len(), drawing.dpi), (2, 1, Some(300.0)));
-    assert!(to_svg(&drawing, &SvgOptions::default()).contains("<line"));
+    assert!(to_svg(&drawing, &WriteOptions::default()).contains("<line"));
     assert_eq!(lines(&drawing).len(), 2);
 }
 

@@ -17,8 +17,7 @@ use std::path::Path;
 /// One of everything on 160 x 120 pixels.
 fn drawing() -> Drawing {
     let mut drawing = Drawing::new(160.0, 120.0);
-    let mut add =
-        |centreline, width| drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
+    let mut add = |centreline, width| drawing.strokes.push(Stroke::new(centreline, width));
     let path = |segments| Centreline::Path { segments, closed: false };
     add(path(vec![Segment::Line(Line::new((10.0, 20.0), (150.0, 100.0)))]), 4.0);
     let arc = Arc::new((80.0, 60.0), (40.0, 40.0), 0.0, 3.0, 0.0);

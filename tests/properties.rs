@@ -12,7 +12,7 @@ use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::raster::Raster;
 use fieldtrace::render::render;
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use kurbo::{Affine, Point};
 
 /// A drawing with a name to know it by.
@@ -214,7 +214,7 @@ fn paper_and_pencil_keep_the_drawing() {
 fn bytes(vectorizer: &Vectorizer, scan: &Scan, threads: usize) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     let drawing = pool.install(|| vectorizer.trace(scan)).expect("a trace");
-    to_svg(&drawing, &SvgOptions { precision: 8, title: None })
+    to_svg(&drawing, &WriteOptions { precision: 8, ..WriteOptions::default() })
 }
 
 #[test]

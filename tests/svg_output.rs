@@ -1,14 +1,14 @@
 //! The SVG text, read back by another library, is the drawing.
 
 use fieldtrace::drawing::{Centreline, Color, Dashes, Drawing, Fill, Segment, Stroke};
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use kurbo::{Arc, Circle, CubicBez, Line, PathEl, Point, Rect, Shape, Vec2};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use usvg::tiny_skia_path::PathSegment;
 
 fn stroke(centreline: Centreline, width: f64) -> Stroke {
-    Stroke { centreline, width, color: Color::BLACK, dashes: None }
+    Stroke::new(centreline, width)
 }
 
 fn chain(segments: Vec<Segment>, closed: bool) -> Centreline {
@@ -16,7 +16,7 @@ fn chain(segments: Vec<Segment>, closed: bool) -> Centreline {
 }
 
 fn svg(drawing: &Drawing) -> String {
-    to_svg(drawing, &SvgOptions::default())
+    to_svg(drawing, &WriteOptions::default())
 }
 
 /// The stroked paths of an SVG: width and points along it.
@@ -141,8 +141,8 @@ proptest! {
         let mut drawing = Drawing::new(200.0, 200.0);
         // Widths tell the strokes apart, since the order changes.
         drawing.strokes = lines.into_iter().enumerate().map(|(i, c)| stroke(c, 0.5 * (i + 1) as f64)).collect();
-        let text = to_svg(&drawing, &SvgOptions { precision, title: None });
-        prop_assert_eq!(&text, &to_svg(&drawing, &SvgOptions { precision, title: None }));
+        let text = to_svg(&drawing, &WriteOptions { precision, ..WriteOptions::default() });
+        prop_assert_eq!(&text, &to_svg(&drawing, &WriteOptions { precision, ..WriteOptions::default() }));
         prop_assert!(!text.contains("NaN") && !text.contains("inf") && !text.contains("\"-0\""));
         let back = read_back(&text);
         prop_assert_eq!(back.len(), drawing.strokes.len());
@@ -167,9 +167,9 @@ fn plain_shapes_are_written_as_such() {
     drawing.strokes.push(stroke(Centreline::Dot(Point::new(70.0, 8.0)), 3.0));
     let text = svg(&drawing);
     for part in [
-        r#"<line stroke-width="1.26" x1="1" x2="90" y1="2" y2="40.5"/>"#,
-        r#"<circle cx="50" cy="25" r="10.13" stroke-width="2"/>"#,
-        r#"<path d="M70 8h0.01" stroke-width="3"/>"#,
+        r##"<line stroke="#000000" stroke-width="1.26" x1="1" x2="90" y1="2" y2="40.5"/>"##,
+        r##"<circle cx="50" cy="25" r="10.13" stroke="#000000" stroke-width="2"/>"##,
+        r##"<path d="M70 8h0.01" stroke="#000000" stroke-width="3"/>"##,
         r#"viewBox="0 0 100 50""#,
         r#"width="100""#,
     ] {
@@ -202,9 +202,15 @@ fn an_upright_rectangle_is_written_as_one() {
         svg(&drawing)
     };
     let text = written(round, true);
-    assert!(text.contains(r#"<rect height="20" rx="4" stroke-width="2" width="30" x="10" y="10"/>"#), "{text}");
+    assert!(
+        text.contains(r##"<rect height="20" rx="4" stroke="#000000" stroke-width="2" width="30" x="10" y="10"/>"##),
+        "{text}"
+    );
     let text = written(sharp.clone(), true);
-    assert!(text.contains(r#"<rect height="20.5" stroke-width="2" width="30" x="50" y="5"/>"#), "{text}");
+    assert!(
+        text.contains(r##"<rect height="20.5" stroke="#000000" stroke-width="2" width="30" x="50" y="5"/>"##),
+        "{text}"
+    );
     for text in [written(sharp[..3].to_vec(), false), written(slanted, true)] {
         assert!(!text.contains("<rect"), "{text}");
     }
@@ -256,7 +262,7 @@ fn each_pen_is_a_layer_and_regions_come_first() {
     drawing.fills.push(Fill { outline: Rect::new(10.0, 10.0, 20.0, 20.5).to_path(0.1), color: red });
     let text = svg(&drawing);
     assert_eq!(text.matches("inkscape:groupmode=\"layer\"").count(), 2);
-    assert!(text.contains("xmlns:inkscape=") && text.contains("inkscape:label=\"Pen #c80010\""), "{text}");
+    assert!(text.contains("xmlns:inkscape=") && text.contains("inkscape:label=\"1 Pen #c80010\""), "{text}");
     let fill = text.find(r##"<path d="M10 10H20V20.5H10Z" fill="#c80010" fill-rule="evenodd" stroke="none"/>"##);
     let (fill, dot) = (fill.expect("the region"), text.find("h0.01").expect("the dot"));
     let (red, black) = (text.find("Pen #c80010").unwrap(), text.find("Pen #000000").unwrap());
@@ -267,7 +273,7 @@ fn each_pen_is_a_layer_and_regions_come_first() {
 #[test]
 fn an_empty_drawing_is_valid() {
     let title = Some("a <b> & \"c\"\u{1}\n".to_string());
-    let text = to_svg(&Drawing::new(7.0, 9.0), &SvgOptions { title, ..SvgOptions::default() });
+    let text = to_svg(&Drawing::new(7.0, 9.0), &WriteOptions { title, ..WriteOptions::default() });
     assert!(read_back(&text).is_empty());
     assert!(text.contains("a &lt;b&gt; &amp;") && text.contains(env!("CARGO_PKG_VERSION")), "{text}");
 }
@@ -298,7 +304,7 @@ fn a_stroke_is_walked_from_the_end_that_is_nearer() {
 
 #[test]
 fn title_is_the_first_child() {
-    let options = SvgOptions { title: Some("bird.png".into()), ..SvgOptions::default() };
+    let options = WriteOptions { title: Some("bird.png".into()), ..WriteOptions::default() };
     let text = to_svg(&Drawing::new(5.0, 5.0), &options);
     let second = text.lines().nth(1).unwrap_or_default();
     assert_eq!(second, "<title>bird.png</title>", "{text}");

@@ -366,7 +366,7 @@ fn rounded(shift: Vec2, radius: f64, width: f64) -> Drawing {
         at = polar(centre, start + 90.0, radius);
     }
     let centreline = Centreline::Path { segments, closed: true };
-    page(vec![Stroke { centreline, width, color: Color::BLACK, dashes: None }])
+    page(vec![Stroke::new(centreline, width)])
 }
 
 /// One exact rectangle with corners of about the radius.

@@ -11,7 +11,7 @@ use fieldtrace::options::{Dashing, Ink, Invert, Options, StrokeWidth, Threshold}
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::raster::Raster;
 use fieldtrace::write::graph_json::{from_json, to_json};
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use kurbo::{Shape, Vec2};
 use num_complex::Complex32;
 
@@ -43,7 +43,7 @@ fn read(bytes: &[u8]) {
     assert!(input.scan.rgb.is_none_or(|rgb| (rgb.width() as usize, rgb.height() as usize) == (width, height)));
     assert!(input.scan.dpi.is_none_or(|dpi| dpi.is_finite() && dpi > 0.0));
     if let Some(drawing) = input.drawing {
-        to_svg(&drawing, &SvgOptions::default());
+        to_svg(&drawing, &WriteOptions::default());
     }
 }
 
@@ -190,7 +190,7 @@ fn assert_finite(drawing: &Drawing) {
         }
     }
     assert!(drawing.fills.iter().all(|fill| fill.outline.is_finite()));
-    let svg = to_svg(drawing, &SvgOptions::default());
+    let svg = to_svg(drawing, &WriteOptions::default());
     assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN") && !svg.contains("inf"));
 }
 

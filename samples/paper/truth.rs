@@ -1,6 +1,6 @@
 //! A rendering beside its true field: `cargo run --release --features train --example truth -- OUT.png`.
 
-use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
+use fieldtrace::drawing::{Centreline, Drawing, Segment, Stroke};
 use fieldtrace::ground_truth;
 use fieldtrace::inspect::{field_overlay, to_png};
 use fieldtrace::load::Scan;
@@ -19,8 +19,7 @@ fn drawing() -> Drawing {
         Centreline::Circle(Circle::new((22.0, 58.0), 15.0)),
     ];
     let mut drawing = Drawing::new(96.0, 76.0);
-    drawing.strokes =
-        centrelines.map(|centreline| Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None }).into();
+    drawing.strokes = centrelines.map(|centreline| Stroke::new(centreline, 4.0)).into();
     drawing.scaled(0.75)
 }
 

@@ -6,13 +6,13 @@
 //! jobs: it reads, traces and writes one file, unless that has been done before.
 //!
 //! ```
-//! use fieldtrace::batch::{Batch, Event, FileTracer, Plan};
+//! use fieldtrace::batch::{Batch, Destination, Event, FileTracer, Plan};
 //! use fieldtrace::options::Options;
 //! use fieldtrace::pipeline::Vectorizer;
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let folder = folder.path();
-//! let plan = Plan::new(&["samples/*.png".into(), "samples/leaf.jpg".into()], folder, false)?;
+//! let plan = Plan::new(&["samples/*.png".into(), "samples/leaf.jpg".into()], &Destination::folder(folder), false)?;
 //! let tracer = FileTracer::new(Vectorizer::new(Options::default())?);
 //! let say = |event: Event<_, _>| {
 //!     if let Event::Started { input, .. } = event {
@@ -30,7 +30,7 @@ mod find;
 mod plan;
 mod run;
 
-pub use file::{FileTracer, Traced};
+pub use file::{FileTracer, Traced, page_path};
 pub use find::is_pattern;
-pub use plan::{Job, Plan, Share};
+pub use plan::{Destination, Job, Plan, Share};
 pub use run::{Batch, Event, Outcome};

@@ -32,7 +32,7 @@ pub(crate) use width::is_ridge;
 use crate::cancel::Cancel;
 use crate::error::Result;
 use crate::load::Scan;
-use crate::options::Options;
+use crate::options::{MaxWidth, Options};
 use crate::raster::{Mask, Raster};
 use imageproc::filter::gaussian_blur_f32;
 use page::Page;
@@ -103,13 +103,14 @@ fn cleaned(page: Page, options: &Options, cancel: &Cancel) -> Result<LineImage> 
     specks::remove(&mut mask, &mut ink, line_width, &noise, options.despeckle);
     cancel.check()?;
     let blur = blur_of(&ink, &mask, &depth, line_width, noise.mean(), resampling, scale);
-    let broad = solids::take_broad(&mut mask, &depth, unblurred_width(line_width, blur));
+    let widest = widest(options.max_width, scale);
+    let broad = solids::take_broad(&mut mask, &depth, unblurred_width(line_width, blur), widest);
     let broad = broad.map(|region| (broad::take(&mut ink, &mut mask, &region, &noise), region));
     if broad.is_some() {
         depth = distance(&mask);
     }
     cancel.check()?;
-    let (solid, solids) = solids::take(&mut mask, &mut ink, &depth, line_width);
+    let (solid, solids) = solids::take(&mut mask, &mut ink, &depth, line_width, widest);
     let depth = if solids.is_empty() { depth } else { distance(&mask) };
     cancel.check()?;
     ink.data_mut().par_iter_mut().for_each(|i| *i = i.min(DARKEST));
@@ -132,6 +133,15 @@ fn cleaned(page: Page, options: &Options, cancel: &Cancel) -> Result<LineImage> 
     };
     image.broad = broad.map(|(ink, mask)| Box::new(broad::image(ink, mask, &image)));
     Ok(image)
+}
+
+/// Half the width of the widest lines in a raster of a scale, where that is given.
+fn widest(max_width: MaxWidth, scale: f64) -> Option<f64> {
+    match max_width {
+        MaxWidth::Auto | MaxWidth::Millimetres(_) => None,
+        MaxWidth::Pixels(width) => Some(0.5 * width * scale),
+        MaxWidth::Unlimited => Some(f64::INFINITY),
+    }
 }
 
 /// Depth of the mask and typical width of its lines.

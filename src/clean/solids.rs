@@ -32,6 +32,8 @@ const BROAD_SHARE: f64 = 0.02;
 const BROADEST: f64 = 5.0;
 /// A region is a knot where lines meet, and no solid, if they leave it over more than this share of its rim.
 const KNOT: f64 = 0.33;
+/// A region of at most a width that was asked for is a line if it has this many squares of its width.
+const LONGER: f64 = 2.0;
 /// Ink beside a solid region that is less than this many squares of the line width is its corner, not a line.
 const CORNER: f64 = 4.0;
 
@@ -43,19 +45,23 @@ pub(super) fn half_width_of_wide(line_width: f64) -> f64 {
     FACTOR * 0.5 * line_width + MARGIN
 }
 
-/// Takes broad lines out of the mask and returns where they are; `None` where there are none.
-pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64) -> Option<Mask> {
+/// Takes broad lines out of the mask and returns where they are; `None` where there are none. `widest` is half the width up to
+/// which all ink is a line, where that is given.
+pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64, widest: Option<f64>) -> Option<Mask> {
     let radius = half_width_of_wide(line_width);
     if !is_deeper(depth, radius) {
         return None;
     }
     let ridge = ridge_pixels(mask, depth);
     let deep = ridge.iter().filter(|&&p| f64::from(depth[p]) > radius).count();
-    if (deep as f64) < BROAD_SHARE * ridge.len() as f64 {
+    if widest.is_none() && (deep as f64) < BROAD_SHARE * ridge.len() as f64 {
         return None;
     }
     let (region, labels, count) = regions(mask, depth, radius, line_width);
-    let (is_broad, uneven) = broad_labels(&region, &labels, count, depth);
+    let (mut is_broad, uneven) = broad_labels(&region, &labels, count, depth);
+    if let Some(widest) = widest {
+        is_broad = within(&labels, count, depth, widest);
+    }
     if !is_broad.contains(&true) {
         return None;
     }
@@ -65,16 +71,28 @@ pub(super) fn take_broad(mask: &mut Mask, depth: &Raster<f32>, line_width: f64) 
     Some(broad)
 }
 
-/// Takes the solid regions out of the mask, and their ink with them: it is no line's. Their pixels and their outlines.
-pub(super) fn take(mask: &mut Mask, ink: &mut Raster<f32>, depth: &Raster<f32>, line_width: f64) -> (Mask, Vec<Fill>) {
-    let radius = half_width_of_wide(line_width);
+/// Takes the solid regions out of the mask, and their ink with them: it is no line's. Their pixels and their outlines. `widest`
+/// is half the width from which all ink is solid, where that is given.
+pub(super) fn take(
+    mask: &mut Mask,
+    ink: &mut Raster<f32>,
+    depth: &Raster<f32>,
+    line_width: f64,
+    widest: Option<f64>,
+) -> (Mask, Vec<Fill>) {
+    let radius = half_width_of_wide(line_width).min(widest.unwrap_or(f64::INFINITY) + 0.5);
     if !is_deeper(depth, radius) {
         return (Raster::zeroed(mask.width(), mask.height()), Vec::new());
     }
     let (_, labels, count) = regions(mask, depth, radius, line_width);
-    let knots = knots(&labels, count, mask);
-    let mut solid = solid_labels(&labels, count, depth, line_width);
-    solid.iter_mut().zip(knots).for_each(|(solid, knot)| *solid &= !knot);
+    let mut solid = match widest {
+        Some(_) => (0..=count).map(|label| label > 0).collect(),
+        None => solid_labels(&labels, count, depth, line_width),
+    };
+    if widest.is_none() {
+        let knots = knots(&labels, count, mask);
+        solid.iter_mut().zip(knots).for_each(|(solid, knot)| *solid &= !knot);
+    }
     let boxes = bounding_boxes(&labels, count);
     let fills = (1..=count).filter(|&label| solid[label]).map(|label| {
         let outline = outline(&labels, label as u32, mask, ink, boxes[label]);
@@ -178,11 +196,8 @@ fn broad_labels(region: &Mask, labels: &Labels, count: usize, depth: &Raster<f32
 /// Which labels are solid regions rather than lines somewhat broader than the others.
 fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>, line_width: f64) -> Vec<bool> {
     let mut area = vec![0usize; count + 1];
-    let mut deepest = vec![0f32; count + 1];
-    for (&label, &d) in labels.iter().zip(depth.data()) {
-        area[label as usize] += 1;
-        deepest[label as usize] = deepest[label as usize].max(d);
-    }
+    labels.iter().for_each(|&label| area[label as usize] += 1);
+    let deepest = deepest(labels, count, depth);
     let mut solid: Vec<bool> = (0..=count)
         .map(|l| {
             let width = 2.0 * f64::from(deepest[l]) - 1.0;
@@ -191,6 +206,27 @@ fn solid_labels(labels: &Labels, count: usize, depth: &Raster<f32>, line_width: 
         .collect();
     solid[0] = false;
     solid
+}
+
+/// Which labels are no wider than asked and longer than wide, so that a line can be drawn of them.
+fn within(labels: &Labels, count: usize, depth: &Raster<f32>, widest: f64) -> Vec<bool> {
+    let mut area = vec![0usize; count + 1];
+    labels.iter().for_each(|&label| area[label as usize] += 1);
+    let is_line = |(l, d): (usize, f32)| {
+        let width = 2.0 * f64::from(d) - 1.0;
+        l > 0 && f64::from(d) <= widest + 0.5 && area[l] as f64 >= LONGER * width * width
+    };
+    deepest(labels, count, depth).into_iter().enumerate().map(is_line).collect()
+}
+
+/// The greatest depth of each label.
+fn deepest(labels: &Labels, count: usize, depth: &Raster<f32>) -> Vec<f32> {
+    let mut deepest = vec![0f32; count + 1];
+    for (&label, &d) in labels.iter().zip(depth.data()) {
+        deepest[label as usize] = deepest[label as usize].max(d);
+    }
+    deepest[0] = 0.0;
+    deepest
 }
 
 /// Which labels have rims that are mostly ink of lines that leave there.
@@ -255,7 +291,7 @@ mod tests {
         });
         let mut mask = ink.map(|i| i > 0.5);
         let depth = distance(&mask);
-        let (solid, fills) = take(&mut mask, &mut ink, &depth, 3.0);
+        let (solid, fills) = take(&mut mask, &mut ink, &depth, 3.0, None);
         assert_eq!(fills.len(), 1);
         let area = fills[0].outline.area().abs();
         assert!((area / (std::f64::consts::PI * 400.0) - 1.0).abs() < 0.01, "{area}");

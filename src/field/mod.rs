@@ -6,10 +6,12 @@
 //! smoothed and regressed, which angles cannot (Taktasheva et al. 2019, section 3; Diamanti et al. 2014).
 
 mod frame;
+#[cfg(feature = "npz")]
 mod npz;
 mod smooth;
 
 pub use frame::{Frame, FrameField};
+#[cfg(feature = "npz")]
 pub use npz::write_npz;
 
 use crate::error::{Error, Result};

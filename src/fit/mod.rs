@@ -13,10 +13,13 @@ mod fillet;
 mod joints;
 mod line;
 mod outline;
+mod pens;
 mod price;
+mod profile;
 mod rectangle;
 mod samples;
 mod segmentation;
+mod shade;
 mod solid;
 mod stroke;
 mod vertices;
@@ -25,9 +28,10 @@ use crate::cancel::Cancel;
 use crate::clean::unblurred_width;
 use crate::drawing::{Centreline, Dashes, Drawing, Fill, Stroke};
 use crate::error::Result;
-use crate::graph::StrokeGraph;
+use crate::graph::{Dot, StrokeGraph, Trail};
 use crate::options::{Options, StrokeWidth};
 use price::QUARTER_STEPS;
+use profile::Profile;
 use rayon::prelude::*;
 use samples::Samples;
 
@@ -75,26 +79,12 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
     let fit = (options.detail * page.line_width).max(0.1);
     let steadiness = (STEADINESS * fit).max(QUARTER_STEPS * page.scale);
     let tolerance = Tolerance { fit, width: page.line_width, steadiness, pixel: page.scale };
-    let outlined = options.width == StrokeWidth::Outline;
     let fitted: Vec<Option<Drawn>> = graph
         .trails
         .par_iter()
         .map(|trail| {
             cancel.check()?;
-            let walk = graph.walk(trail);
-            let Some(centreline) = stroke::fit_trail(&walk, trail.closed, tolerance) else { return Ok(None) };
-            let centreline = rectangle::regular(centreline, tolerance);
-            let pattern = |d: Dashes| if trail.closed { dashes::along(d, &walk, &centreline) } else { d };
-            let dashes = trail.dashes.map(pattern);
-            let measured = median_width(walk.iter().map(|p| p.width)).unwrap_or(page.line_width);
-            let width = unblurred_width(measured, page.blur);
-            let stroke = Stroke { centreline, width, color: trail.color, dashes };
-            if !outlined || stroke.dashes.is_some() {
-                return Ok(Some(Drawn::Stroke(stroke)));
-            }
-            let profile = outline::Profile::new(&walk, page.blur, width);
-            let outlines = outline::outline(&stroke, &profile, &graph.revisits(trail), tolerance);
-            Ok(Some(Drawn::Outlines(outlines)))
+            Ok(drawn(graph, trail, options.width, tolerance))
         })
         .collect::<Result<_>>()?;
     let mut drawing =
@@ -106,21 +96,39 @@ pub fn fit(graph: &StrokeGraph, options: &Options, cancel: &Cancel) -> Result<Dr
         }
     }
     vertices::meet(&mut drawing.strokes, tolerance);
-    drawing.strokes.extend(graph.dots.iter().map(|dot| Stroke {
-        centreline: Centreline::Dot(dot.centre),
-        width: dot.diameter,
-        color: dot.color,
-        dashes: None,
-    }));
+    let dot = |dot: &Dot| Stroke { color: dot.color, ..Stroke::new(Centreline::Dot(dot.centre), dot.diameter) };
+    drawing.strokes.extend(graph.dots.iter().map(dot));
     set_widths(&mut drawing, options.width, page.scale);
-    let scaled = drawing.scaled(1.0 / page.scale);
+    let mut scaled = drawing.scaled(1.0 / page.scale);
+    shade::treat(&mut scaled, options.solids);
     Ok(Drawing { width: page.width, height: page.height, dpi: page.dpi, ..scaled })
+}
+
+/// What a trail becomes; nothing where it has no extent.
+fn drawn(graph: &StrokeGraph, trail: &Trail, width: StrokeWidth, tolerance: Tolerance) -> Option<Drawn> {
+    let (page, walk) = (&graph.page, graph.walk(trail));
+    let centreline = stroke::fit_trail(&walk, trail.closed, tolerance)?;
+    let centreline = rectangle::regular(centreline, tolerance);
+    let pattern = |d: Dashes| if trail.closed { dashes::along(d, &walk, &centreline) } else { d };
+    let dashes = trail.dashes.map(pattern);
+    let profile = Profile::new(&walk, page.blur, unblurred_width(page.line_width, page.blur));
+    let mut stroke = Stroke { color: trail.color, dashes, ..Stroke::new(centreline, profile.mean()) };
+    match width {
+        StrokeWidth::Outline if stroke.dashes.is_none() => {
+            let outlines = outline::outline(&stroke, &profile, &graph.revisits(trail), tolerance);
+            return Some(Drawn::Outlines(outlines));
+        }
+        StrokeWidth::Profile => stroke.profile = profile.samples(&stroke.centreline, tolerance.width),
+        _ => {}
+    }
+    Some(Drawn::Stroke(stroke))
 }
 
 /// Replaces measured widths where one width is asked for.
 fn set_widths(drawing: &mut Drawing, width: StrokeWidth, scale: f64) {
     let all = match width {
-        StrokeWidth::Measured | StrokeWidth::Outline => return,
+        StrokeWidth::Pens => return pens::snap(&mut drawing.strokes, scale),
+        StrokeWidth::Measured | StrokeWidth::Outline | StrokeWidth::Profile => return,
         StrokeWidth::Uniform => median_width(drawing.strokes.iter().map(|s| s.width)),
         StrokeWidth::Fixed(px) => Some(px * scale),
     };

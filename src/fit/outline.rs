@@ -6,11 +6,10 @@
 
 use super::Tolerance;
 use super::chain::join;
+use super::profile::Profile;
 use super::samples::Samples;
 use super::segmentation::segment;
-use crate::clean::unblurred_width;
 use crate::drawing::{Centreline, Fill, Segment, Stroke};
-use crate::graph::TrailPoint;
 use kurbo::{Arc, BezPath, ParamCurve, ParamCurveArclen, ParamCurveDeriv, PathSeg, Point, Vec2};
 use std::f64::consts::PI;
 
@@ -24,37 +23,6 @@ const SMOOTHING: f64 = 1.0;
 const THINNEST: f64 = 0.3;
 /// Accuracy of the round ends, in pixels.
 const ROUND: f64 = 0.01;
-
-/// Widths along a stroke.
-pub(super) struct Profile {
-    /// Distance from the start as a share of the length, growing.
-    at: Vec<f64>,
-    widths: Vec<f64>,
-}
-
-impl Profile {
-    /// The widths of a trail; `blur` is taken off them. `spare` stands in where none is measured.
-    pub fn new(walk: &[TrailPoint], blur: f64, spare: f64) -> Self {
-        let mut arc = vec![0.0; walk.len()];
-        for k in 1..walk.len() {
-            arc[k] = arc[k - 1] + (walk[k].point - walk[k - 1].point).hypot();
-        }
-        let total = arc.last().copied().unwrap_or(0.0).max(1e-9);
-        let measured = walk.iter().zip(&arc).filter(|(p, _)| p.width.is_finite());
-        let (at, widths): (Vec<f64>, Vec<f64>) =
-            measured.map(|(p, s)| (s / total, unblurred_width(p.width, blur))).unzip();
-        if at.is_empty() { Self { at: vec![0.0], widths: vec![spare] } } else { Self { at, widths } }
-    }
-
-    /// The width at a share of the length.
-    fn width(&self, share: f64) -> f64 {
-        let after = self.at.partition_point(|&s| s < share);
-        let (a, b) = (after.saturating_sub(1), after.min(self.at.len() - 1));
-        let span = self.at[b] - self.at[a];
-        let t = if span > 0.0 { ((share - self.at[a]) / span).clamp(0.0, 1.0) } else { 0.0 };
-        self.widths[a] + t * (self.widths[b] - self.widths[a])
-    }
-}
 
 /// A place on a centreline with its direction and the width there.
 #[derive(Clone, Copy)]

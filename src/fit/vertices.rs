@@ -131,7 +131,7 @@ impl Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Color;
+
     use kurbo::Line;
 
     const TOLERANCE: Tolerance = Tolerance { fit: 0.3, width: 4.0, steadiness: 0.1, pixel: 1.0 };
@@ -139,7 +139,7 @@ mod tests {
     fn chain(points: &[(f64, f64)]) -> Stroke {
         let lines = points.windows(2).map(|p| Segment::Line(Line::new(p[0], p[1])));
         let centreline = Centreline::Path { segments: lines.collect(), closed: false };
-        Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None }
+        Stroke::new(centreline, 4.0)
     }
 
     /// The only corner of a chain of two lines.

@@ -1,13 +1,13 @@
 //! The field of drawings whose field has a closed form.
 
 use super::*;
-use crate::drawing::{Centreline, Color, Segment, Stroke};
+use crate::drawing::{Centreline, Segment, Stroke};
 use crate::field::FrameField;
 use kurbo::{Arc, Circle, Line, Point, Vec2};
 use std::f64::consts::PI;
 
 fn stroke(segments: Vec<Segment>, width: f64) -> Stroke {
-    Stroke { centreline: Centreline::Path { segments, closed: false }, width, color: Color::BLACK, dashes: None }
+    Stroke::new(Centreline::Path { segments, closed: false }, width)
 }
 
 fn line(x0: f64, y0: f64, x1: f64, y1: f64, width: f64) -> Stroke {
@@ -51,7 +51,7 @@ fn a_line_has_its_tangent_and_normal() {
 #[test]
 fn a_circle_has_the_perpendicular_to_its_radius() {
     let circle = Centreline::Circle(Circle::new((31.3, 32.8), 20.0));
-    let truth = field(&drawing(vec![Stroke { centreline: circle, width: 4.0, color: Color::BLACK, dashes: None }]));
+    let truth = field(&drawing(vec![Stroke::new(circle, 4.0)]));
     let (mean, worst) = root_error(&truth, |x, y| {
         Some((Point::new(x as f64 + 0.5, y as f64 + 0.5) - Point::new(31.3, 32.8)).atan2() + PI / 2.0)
     });

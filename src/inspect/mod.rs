@@ -3,20 +3,31 @@
 //! Each `*_overlay` function gives an SVG in pixels of the input, with the lightened input inside it, and
 //! [`to_png`] makes it a picture. [`DebugDir`] is an observer that writes one of each stage to a folder.
 
+#[cfg(feature = "svg-input")]
 mod comparison;
+#[cfg(feature = "files")]
 mod debug_dir;
+#[cfg(feature = "svg-input")]
 mod field;
+#[cfg(feature = "svg-input")]
 mod graph;
 mod likeness;
+#[cfg(feature = "svg-input")]
 mod lines;
+#[cfg(feature = "svg-input")]
 mod overlay;
+#[cfg(feature = "svg-input")]
 mod strokes;
 
-pub use comparison::comparison_overlay;
+#[cfg(feature = "files")]
 pub use debug_dir::DebugDir;
-pub use field::{coverage_picture, field_overlay, ink_picture};
-pub use graph::{graph_overlay, streamlines_overlay};
 pub use likeness::{NO_DRAWING, edge_share};
-pub use lines::lines_overlay;
-pub use overlay::to_png;
-pub use strokes::drawing_overlay;
+#[cfg(feature = "svg-input")]
+pub use {
+    comparison::comparison_overlay,
+    field::{coverage_picture, field_overlay, ink_picture},
+    graph::{graph_overlay, streamlines_overlay},
+    lines::lines_overlay,
+    overlay::to_png,
+    strokes::drawing_overlay,
+};

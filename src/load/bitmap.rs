@@ -1,10 +1,12 @@
-//! Raster formats: decoded, turned upright and laid over white.
+//! Raster formats of one image: decoded, and lightness and colour told from samples of every kind.
 
-use super::{LoadOptions, Scan, jpeg, resolution, tiff, undecodable};
+use super::format::Format;
+use super::plan::{Header, Plan};
+use super::{LoadOptions, Scan, jpeg, resolution, undecodable};
 use crate::error::Result;
 use crate::raster::Raster;
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits, Pixel};
 use rayon::prelude::*;
 use std::io::Cursor;
 
@@ -17,79 +19,76 @@ const UNSEEN: f32 = 8.5 / 255.0;
 /// Rec. 709 luma of the stored values.
 const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-/// Decodes a raster image.
-///
-/// # Errors
-/// [`Error::Decode`] and [`Error::TooLarge`].
-pub(super) fn load(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Scan> {
-    let format = format_of(name, bytes)?;
-    let Decoded { mut image, orientation, dpi } = match format {
-        ImageFormat::Tiff => tiff::decode(name, bytes, options)?,
-        _ => decode(name, bytes, format, options)?,
-    };
-    image.apply_orientation(orientation);
-    Ok(scan(&image, options.dpi.or(dpi)))
-}
-
-/// An image as stored, and how it is to be seen.
+/// An image as stored, and what is to be made of it.
 pub(super) struct Decoded {
     /// The samples as stored.
     pub image: DynamicImage,
-    /// What turns it upright.
-    pub orientation: Orientation,
-    /// Dots per inch, where the file says.
-    pub dpi: Option<f64>,
+    /// What makes a scan of it.
+    pub plan: Plan,
 }
 
-fn format_of(name: &str, bytes: &[u8]) -> Result<ImageFormat> {
-    const SUPPORTED: &str = "PNG, JPEG, TIFF, WebP, BMP, GIF, PNM and SVG are";
-    if let Some(other) = foreign_format(bytes) {
-        return Err(undecodable(name, format!("{other} is not supported ({SUPPORTED})")));
-    }
-    let format = image::guess_format(bytes)
-        .map_err(|_| undecodable(name, format!("this is not an image in a known format ({SUPPORTED})")))?;
-    if !format.reading_enabled() {
-        return Err(undecodable(name, format!("{} is not supported ({SUPPORTED})", format.to_mime_type())));
-    }
-    Ok(format)
-}
-
-/// The name of a format that drawings come in and that is not read here.
-fn foreign_format(bytes: &[u8]) -> Option<&'static str> {
-    let brand = bytes.get(4..12).unwrap_or_default();
-    match brand {
-        b"ftypheic" | b"ftypheix" | b"ftypmif1" => return Some("HEIC"),
-        b"ftypavif" => return Some("AVIF"),
-        _ => {}
-    }
-    let starts: [(&[u8], &str); 6] = [
-        (b"%PDF", "PDF"),
-        (b"%!PS", "PostScript"),
-        (b"8BPS", "PSD"),
-        (b"\xFF\x0A", "JPEG XL"),
-        (b"\0\0\0\x0CJXL ", "JPEG XL"),
-        (b"\0\0\0\x0CjP  ", "JPEG 2000"),
-    ];
-    starts.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|&(_, name)| name)
-}
-
-fn decode(name: &str, bytes: &[u8], format: ImageFormat, options: &LoadOptions) -> Result<Decoded> {
-    let damaged = |e: image::ImageError| undecodable(name, e);
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    // Dimensions have their own check below; this bounds what a decoder allocates on the way to them.
+/// What a decoder may allocate: enough for any image within the options.
+pub(super) fn limits(options: &LoadOptions) -> Limits {
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(options.max_pixels.saturating_mul(16).saturating_add(1 << 20));
-    reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(damaged)?;
+    limits
+}
+
+/// Decodes the one image of a file.
+///
+/// # Errors
+/// [`crate::Error::Decode`] and [`crate::Error::TooLarge`].
+pub(super) fn decode(name: &str, bytes: &[u8], format: Format, options: &LoadOptions) -> Result<Decoded> {
+    let damaged = |e: image::ImageError| undecodable(name, e);
+    #[cfg(feature = "formats")]
+    let jp2 = if format == Format::Jpeg2000 { super::jp2::boxes(bytes) } else { Default::default() };
+    #[cfg(feature = "formats")]
+    if let Some(fault) = jp2.fault {
+        return Err(undecodable(name, fault));
+    }
+    let mut decoder = open(bytes, format, options).map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     options.check_size(name, width.into(), height.into())?;
-    if format == ImageFormat::Jpeg && !jpeg::markers(bytes).complete {
+    if format == Format::Raster(ImageFormat::Jpeg) && !jpeg::markers(bytes).complete {
         return Err(undecodable(name, "the JPEG is cut short: it has no end marker"));
     }
-    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let orientation = match format {
+        Format::Raster(_) => decoder.orientation().unwrap_or(Orientation::NoTransforms),
+        // Decoders of other formats turn the image themselves.
+        _ => Orientation::NoTransforms,
+    };
     let exif = decoder.exif_metadata().ok().flatten();
+    let density = match format {
+        Format::Raster(format) => resolution::density(format, bytes, exif.as_deref()),
+        #[cfg(feature = "formats")]
+        _ => jp2.density,
+        #[cfg(not(feature = "formats"))]
+        #[allow(unreachable_patterns)] // without SVG
+        _ => None,
+    };
+    let plan = Header { width, height, orientation, density }.plan(name, options)?;
     let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    Ok(Decoded { image, orientation, dpi: resolution::dpi(format, bytes, exif.as_deref()) })
+    Ok(Decoded { image, plan })
+}
+
+/// A decoder that has read the header.
+fn open<'a>(bytes: &'a [u8], format: Format, options: &LoadOptions) -> ImageResult<Box<dyn ImageDecoder + 'a>> {
+    // Dimensions have their own check; this bounds what a decoder allocates on the way to them.
+    let limits = limits(options);
+    Ok(match format {
+        Format::Raster(format) => {
+            let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+            reader.limits(limits);
+            Box::new(reader.into_decoder()?)
+        }
+        #[cfg(feature = "formats")]
+        Format::Jpeg2000 => Box::new(hayro_jpeg2000::Image::new(bytes, &Default::default())?),
+        #[allow(unreachable_patterns)] // without the further formats
+        _ => {
+            let hint = image::error::ImageFormatHint::Unknown;
+            return Err(image::ImageError::Unsupported(hint.into()));
+        }
+    })
 }
 
 /// A sample of any type as a fraction of its range.
@@ -193,7 +192,6 @@ fn spread([r, g, b]: [f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Error;
     use image::{Luma, LumaA, Rgb, RgbImage, Rgba};
 
     #[test]
@@ -231,12 +229,5 @@ mod tests {
         let got = scan(&DynamicImage::ImageRgb8(red.clone()), Some(300.0));
         assert_eq!((got.rgb, got.dpi), (Some(red), Some(300.0)));
         assert!((got.gray[(1, 0)] - LUMA[0]).abs() < 1e-6);
-    }
-
-    #[test]
-    fn other_formats_are_named() {
-        let error = format_of("plan.pdf", b"%PDF-1.7 ...").unwrap_err();
-        assert!(error.to_string().starts_with("plan.pdf: PDF is not supported"), "{error}");
-        assert!(matches!(format_of("x", b"hello world"), Err(Error::Decode { .. })));
     }
 }

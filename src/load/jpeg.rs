@@ -1,10 +1,12 @@
 //! The marker structure of a JPEG file (ITU-T T.81, annex B), as far as the decoder does not tell it.
 
+use super::plan::Density;
+
 /// What the markers say.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Markers {
-    /// Horizontal density of the JFIF header, in dots per inch; `None` where it has no unit.
-    pub dpi: Option<f64>,
+    /// What the JFIF header says of the density.
+    pub density: Option<Density>,
     /// Whether the end marker was reached: a decoder pads a file that is cut short with grey.
     pub complete: bool,
 }
@@ -25,7 +27,7 @@ pub(super) fn markers(bytes: &[u8]) -> Markers {
             _ => {
                 let Some((payload, after)) = segment(after) else { break };
                 if marker == APP0 {
-                    found.dpi = found.dpi.or_else(|| jfif_dpi(payload));
+                    found.density = found.density.or_else(|| jfif_density(payload));
                 }
                 rest = after;
             }
@@ -54,12 +56,14 @@ fn segment(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// Density of a JFIF `APP0` payload: identifier, version (2 bytes), unit, then X and Y density.
-fn jfif_dpi(payload: &[u8]) -> Option<f64> {
+fn jfif_density(payload: &[u8]) -> Option<Density> {
     let fields = payload.strip_prefix(b"JFIF\0")?;
-    let density = f64::from(u16::from_be_bytes([*fields.get(3)?, *fields.get(4)?]));
+    let density = |at: usize| Some(f64::from(u16::from_be_bytes([*fields.get(at)?, *fields.get(at + 1)?])));
+    let (x, y) = (density(3)?, density(5)?);
     match fields.get(2)? {
-        1 => Some(density),
-        2 => Some(density * 2.54),
+        0 => Density::shape(x, y),
+        1 => Density::inch(Some(x), Some(y)),
+        2 => Density::inch(Some(x * 2.54), Some(y * 2.54)),
         _ => None,
     }
 }
@@ -72,16 +76,17 @@ mod tests {
         let mut bytes = vec![0xFF, 0xD8, 0xFF, 0xE0, 0, 16];
         bytes.extend(b"JFIF\0\x01\x02");
         bytes.push(unit);
-        bytes.extend(density.to_be_bytes());
-        bytes.extend([0, 1, 0, 0]);
+        bytes.extend([density, 2 * density].map(u16::to_be_bytes).concat());
+        bytes.extend([0, 0]);
         bytes
     }
 
     #[test]
     fn the_density_is_read_in_its_unit() {
-        assert_eq!(markers(&jfif(1, 300)).dpi, Some(300.0));
-        assert_eq!(markers(&jfif(2, 100)).dpi, Some(254.0));
-        assert_eq!(markers(&jfif(0, 1)).dpi, None);
+        assert_eq!(markers(&jfif(1, 300)).density, Density::inch(Some(300.0), Some(600.0)));
+        assert_eq!(markers(&jfif(2, 100)).density, Density::inch(Some(254.0), Some(508.0)));
+        assert_eq!(markers(&jfif(0, 1)).density, Density::shape(1.0, 2.0));
+        assert_eq!(markers(&jfif(7, 1)).density, None);
     }
 
     #[test]

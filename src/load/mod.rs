@@ -1,22 +1,52 @@
 //! Reads an input: a raster scan, or an SVG that is rendered first.
 //!
 //! After this stage: the image is upright, its transparency lies over white, its samples are as precise as they were
-//! stored, and it has at least one pixel and at most [`LoadOptions::max_pixels`].
+//! stored, its pixels are square, and it has at least one pixel and at most [`LoadOptions::max_pixels`].
+//!
+//! Where a file says that pixels lie less densely one way than the other, as a fax does, the image is resampled at the
+//! finer resolution: pixels then are those of the resampled image.
+//!
+//! [`load`] reads an input of one page, and [`load_pages`] one of any number, page by page. [`load_image`] takes what another
+//! program has decoded.
 
+#[cfg(feature = "formats")]
+mod animation;
+#[cfg(feature = "avif")]
+mod avif;
 mod bitmap;
+mod format;
+mod geo;
 mod group3;
+#[cfg(feature = "formats")]
+mod jp2;
 mod jpeg;
+#[cfg(feature = "formats")]
+mod jxl;
+mod options;
+mod pages;
+#[cfg(feature = "formats")]
+mod pdf;
+mod plan;
 mod resolution;
+mod square;
+#[cfg(feature = "svg-input")]
 pub mod svg;
 mod tiff;
 
 use crate::drawing::Drawing;
 use crate::error::{Error, Result};
+use crate::place::Frame;
 use crate::raster::Raster;
-use image::{DynamicImage, RgbImage};
+use image::metadata::Orientation;
+use image::{DynamicImage, GrayImage, RgbImage, RgbaImage};
+use std::borrow::Cow;
 use std::io::{ErrorKind, Read};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+
+pub(crate) use geo::for_scan;
+pub use geo::georeference;
+pub use options::{Dpi, LoadOptions};
+pub use pages::Pages;
 
 /// A drawing as it came in, before any cleaning.
 #[derive(Clone, Debug)]
@@ -36,6 +66,24 @@ impl From<&DynamicImage> for Scan {
     }
 }
 
+impl From<&GrayImage> for Scan {
+    fn from(image: &GrayImage) -> Self {
+        bitmap::scan(&DynamicImage::ImageLuma8(image.clone()), None)
+    }
+}
+
+impl From<&RgbImage> for Scan {
+    fn from(image: &RgbImage) -> Self {
+        bitmap::scan(&DynamicImage::ImageRgb8(image.clone()), None)
+    }
+}
+
+impl From<&RgbaImage> for Scan {
+    fn from(image: &RgbaImage) -> Self {
+        bitmap::scan(&DynamicImage::ImageRgba8(image.clone()), None)
+    }
+}
+
 /// What was read: the image to trace and, where the input was a vector drawing, the truth.
 #[derive(Clone, Debug)]
 pub struct Input {
@@ -43,58 +91,24 @@ pub struct Input {
     pub scan: Scan,
     /// The strokes of an SVG input in pixels of its rendering; `None` for a raster input.
     pub drawing: Option<Drawing>,
+    /// How an SVG input says its size; `None` for others and for a part of one.
+    pub frame: Option<Frame>,
 }
 
-/// What a reader of inputs may be told.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadOptions {
-    /// Most pixels that an image may have; checked against the header, before anything is decoded.
-    pub max_pixels: u64,
-    /// Dots per inch in place of what the input says. An SVG is rendered at this resolution (96 is one pixel for one
-    /// CSS pixel) unless `size` is given.
-    pub dpi: Option<f64>,
-    /// Longer side in pixels of the rendering of an SVG; raster inputs keep their size.
-    pub size: Option<u32>,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self { max_pixels: 64_000_000, dpi: None, size: None }
-    }
-}
-
-impl LoadOptions {
-    /// Checks every range.
-    ///
-    /// # Errors
-    /// [`Error::Option`] names the first option that is out of its range.
-    pub fn validate(&self) -> Result<()> {
-        let error = |option, reason: String| Err(Error::Option { option, reason });
-        match (self.dpi, self.size) {
-            (Some(dpi), _) if !resolution::plausible(dpi) => error("dpi", format!("{dpi} is not between 1 and 100000")),
-            (_, Some(0)) => error("size", "0 is not a size in pixels".into()),
-            _ => Ok(()),
-        }
-    }
-
-    /// Checks a claimed size in pixels.
-    fn check_size(&self, input: &str, width: u64, height: u64) -> Result<()> {
-        if width == 0 || height == 0 {
-            return Err(undecodable(input, "the image has no pixels"));
-        }
-        if width.saturating_mul(height) > self.max_pixels {
-            return Err(Error::TooLarge { input: input.into(), width, height, limit: self.max_pixels });
-        }
-        Ok(())
-    }
-}
-
-/// Reads an input file, or standard input where the path is `-`.
+/// Reads an input file of one page, or the one page of it that the options name; `-` is standard input.
 ///
 /// # Errors
 /// [`Error::Read`] where the file cannot be read, and the errors of [`load_bytes`].
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Input> {
-    load_bytes(&path.display().to_string(), &read_bytes(path)?, options)
+    load_pages(path, options)?.only()
+}
+
+/// Opens an input file of any number of pages, or standard input where the path is `-`.
+///
+/// # Errors
+/// [`Error::Read`] where the file cannot be read, and the errors of [`pages_of_bytes`].
+pub fn load_pages(path: &Path, options: &LoadOptions) -> Result<Pages<'static>> {
+    Pages::open(&path.display().to_string(), Cow::Owned(read_bytes(path)?), options)
 }
 
 /// The bytes of an input file, or of standard input where the path is `-`.
@@ -117,31 +131,68 @@ fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     std::fs::read(path)
 }
 
-/// Reads an input that is already in memory; `name` is what errors call it.
+/// Reads an input of one page that is already in memory, or the one page that the options name; `name` is what errors
+/// call it.
 ///
-/// The format is taken from the bytes, not from the name: PNG, JPEG, TIFF, WebP, BMP, GIF (first frame), PNM, SVG or
-/// compressed SVG.
+/// The format is taken from the bytes: PNG, JPEG, TIFF, BMP, PNM, with the feature `svg-input` SVG or compressed SVG,
+/// and with the feature `formats` PDF, WebP, GIF, TGA, QOI, JPEG XL and JPEG 2000, and with `avif` AVIF. A TGA of the first version has
+/// nothing that tells what it is, so there the name counts.
 ///
 /// # Errors
-/// [`Error::Decode`] where the bytes are not a whole image in one of these formats, [`Error::TooLarge`] where the
-/// header claims more than [`LoadOptions::max_pixels`], [`Error::NothingVisible`] where an SVG paints nothing, and
-/// [`Error::Option`] where an option is out of its range.
+/// [`Error::Decode`] where the bytes are not a whole image in one of these formats or the part to read is not within
+/// it, [`Error::TooLarge`] where the header claims more than [`LoadOptions::max_pixels`], [`Error::ManyPages`] where
+/// there are several pages and none is named, [`Error::NoSuchPage`] where there are fewer than the one named,
+/// [`Error::NothingVisible`] where an SVG paints nothing, and [`Error::Option`] where an option is out of its range.
 pub fn load_bytes(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Input> {
-    options.validate()?;
-    // The decoders are other people's code and read hostile bytes: what they trip over is an error like any other.
-    catch_unwind(AssertUnwindSafe(|| dispatch(name, bytes, options)))
-        .unwrap_or_else(|_| Err(undecodable(name, "the decoder gave up on the image: it is damaged")))
+    pages_of_bytes(name, bytes, options)?.only()
 }
 
-fn dispatch(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Input> {
-    if bytes.is_empty() {
-        return Err(undecodable(name, "the file is empty"));
+/// The scan of an image that another program has decoded, read under the options as a file with that one page would be: its
+/// size is checked, a part taken, its pixels made square. `name` is what errors call it.
+///
+/// ```
+/// use fieldtrace::load::{LoadOptions, load_image};
+///
+/// let image = image::DynamicImage::new_luma8(40, 30);
+/// let part = LoadOptions { crop: Some([10, 5, 20, 15]), dpi: Some(300.0.into()), ..LoadOptions::default() };
+/// let scan = load_image("in memory", image, &part)?.scan;
+/// assert_eq!((scan.gray.size(), scan.dpi), ((20, 15), Some(300.0)));
+/// # Ok::<(), fieldtrace::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::TooLarge`], [`Error::NoSuchPage`], [`Error::Decode`] where the image has no pixels or the part to read is not
+/// within it, and [`Error::Option`] where an option is out of its range.
+pub fn load_image(name: &str, image: DynamicImage, options: &LoadOptions) -> Result<Input> {
+    options.validate()?;
+    if let Some(page) = options.page.filter(|&page| page > 1) {
+        return Err(Error::NoSuchPage { input: name.into(), page, pages: 1 });
     }
-    if svg::is_svg(bytes) {
-        return svg::load(name, bytes, options);
-    }
-    let scan = bitmap::load(name, bytes, options)?;
-    Ok(Input { scan, drawing: None })
+    let (width, height) = (image.width(), image.height());
+    let header = plan::Header { width, height, orientation: Orientation::NoTransforms, density: None };
+    let plan = header.plan(name, options)?;
+    Ok(Input { scan: plan.scan(image), drawing: None, frame: None })
+}
+
+/// Opens an input of any number of pages that is already in memory; `name` is what errors call it.
+///
+/// ```
+/// use fieldtrace::load::{LoadOptions, pages_of_bytes};
+///
+/// let pages = pages_of_bytes("a.pbm", &b"P1 2 1 0 1"[..], &LoadOptions::default())?;
+/// assert_eq!(pages.count(), 1);
+/// for (number, page) in pages.iter() {
+///     assert_eq!((number, page?.scan.gray.data()), (1, &[1.0, 0.0][..]));
+/// }
+/// # Ok::<(), fieldtrace::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Decode`] where the bytes are in no format that is read or their list of pages is damaged,
+/// [`Error::NoSuchPage`] where there are fewer pages than the one named, and [`Error::Option`] where an option is out
+/// of its range. Pages are not decoded yet.
+pub fn pages_of_bytes<'a>(name: &str, bytes: impl Into<Cow<'a, [u8]>>, options: &LoadOptions) -> Result<Pages<'a>> {
+    Pages::open(name, bytes.into(), options)
 }
 
 /// The error for bytes that are no image, with its reason brought to one line.
@@ -153,26 +204,6 @@ fn undecodable(input: &str, reason: impl std::fmt::Display) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn options_out_of_range_are_named() {
-        for dpi in [0.0, -300.0, f64::NAN, f64::INFINITY] {
-            let error = LoadOptions { dpi: Some(dpi), ..LoadOptions::default() }.validate().unwrap_err();
-            assert!(error.to_string().starts_with("dpi: "), "{error}");
-        }
-        let error = LoadOptions { size: Some(0), ..LoadOptions::default() }.validate().unwrap_err();
-        assert!(error.to_string().starts_with("size: "), "{error}");
-        assert!(LoadOptions::default().validate().is_ok());
-    }
-
-    #[test]
-    fn sizes_are_checked_without_overflow() {
-        let options = LoadOptions { max_pixels: 100, ..LoadOptions::default() };
-        assert!(options.check_size("a", 10, 10).is_ok());
-        assert!(matches!(options.check_size("a", 10, 11), Err(Error::TooLarge { .. })));
-        assert!(matches!(options.check_size("a", u64::MAX, u64::MAX), Err(Error::TooLarge { .. })));
-        assert!(matches!(options.check_size("a", 0, 5), Err(Error::Decode { .. })));
-    }
 
     #[test]
     fn reasons_keep_to_one_line() {

@@ -1,6 +1,7 @@
 //! Dots per inch, as each format says it.
 
 use super::jpeg;
+use super::plan::Density;
 use image::ImageFormat;
 use std::io::Cursor;
 
@@ -12,40 +13,49 @@ pub(super) fn plausible(dpi: f64) -> bool {
     (1.0..=100_000.0).contains(&dpi)
 }
 
-/// Dots per inch of the bytes of a PNG, JPEG or BMP, or of Exif metadata; `None` where neither says.
+/// The density that the bytes of a PNG, JPEG or BMP, or Exif metadata, tell; `None` where neither does.
 ///
 /// A wrong or missing resolution is no reason to refuse an image, so nothing here fails.
-pub(super) fn dpi(format: ImageFormat, bytes: &[u8], exif: Option<&[u8]>) -> Option<f64> {
+pub(super) fn density(format: ImageFormat, bytes: &[u8], exif: Option<&[u8]>) -> Option<Density> {
     let own = match format {
-        ImageFormat::Png => png_dpi(bytes),
-        ImageFormat::Jpeg => jpeg::markers(bytes).dpi,
-        ImageFormat::Bmp => bmp_dpi(bytes),
+        ImageFormat::Png => png_density(bytes),
+        ImageFormat::Jpeg => jpeg::markers(bytes).density,
+        ImageFormat::Bmp => bmp_density(bytes),
         _ => None,
     };
-    own.filter(|&d| plausible(d)).or_else(|| exif_dpi(exif?)).filter(|&d| plausible(d))
+    own.filter(Density::is_size).or_else(|| exif_density(exif?)).or(own)
 }
 
-/// Dots per inch of a TIFF-style resolution and its unit: 2 is per inch, 3 per centimetre, all else is no resolution.
-pub(super) fn tiff_dpi(resolution: f64, unit: u32) -> Option<f64> {
-    let dpi = match unit {
-        2 => resolution,
-        3 => resolution * 2.54,
-        _ => return None,
+/// The density of a TIFF-style resolution across and down, and its unit: 1 is none, 2 an inch, 3 a centimetre.
+pub(super) fn tiff_density(x: Option<f64>, y: Option<f64>, unit: u32) -> Option<Density> {
+    let dpi = |factor: f64| {
+        let dpi = |v: Option<f64>| v.map(|v| snap(v * factor, 1e-6));
+        Density::inch(dpi(x), dpi(y))
     };
-    plausible(dpi).then(|| snap(dpi, 1e-6))
+    match unit {
+        1 => Density::shape(x?, y?),
+        2 => dpi(1.0),
+        3 => dpi(2.54),
+        _ => None,
+    }
 }
 
 /// The `pHYs` chunk.
-fn png_dpi(bytes: &[u8]) -> Option<f64> {
+fn png_density(bytes: &[u8]) -> Option<Density> {
     let reader = png::Decoder::new(Cursor::new(bytes)).read_info().ok()?;
     let dims = reader.info().pixel_dims?;
-    matches!(dims.unit, png::Unit::Meter).then(|| per_metre(f64::from(dims.xppu)))
+    let (x, y) = (f64::from(dims.xppu), f64::from(dims.yppu));
+    match dims.unit {
+        png::Unit::Meter => Density::inch(Some(per_metre(x)), Some(per_metre(y))),
+        png::Unit::Unspecified => Density::shape(x, y),
+    }
 }
 
-/// `biXPelsPerMeter` of a `BITMAPINFOHEADER` or longer.
-fn bmp_dpi(bytes: &[u8]) -> Option<f64> {
+/// `biXPelsPerMeter` and `biYPelsPerMeter` of a `BITMAPINFOHEADER` or longer.
+fn bmp_density(bytes: &[u8]) -> Option<Density> {
     let int = |at: usize| Some(i32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
-    (int(14)? >= 40).then(|| int(38)).flatten().filter(|&n| n > 0).map(|n| per_metre(f64::from(n)))
+    let dpi = |at: usize| int(at).filter(|&n| n > 0).map(|n| per_metre(f64::from(n)));
+    if int(14)? >= 40 { Density::inch(dpi(38), dpi(42)) } else { None }
 }
 
 /// Whole dots per inch lose up to half a pixel per metre when they are stored per metre: that is given back.
@@ -58,16 +68,23 @@ fn snap(value: f64, tolerance: f64) -> f64 {
     if (value - whole).abs() <= tolerance { whole } else { value }
 }
 
-/// `XResolution` in the unit of `ResolutionUnit` (inches where it is missing).
-fn exif_dpi(raw: &[u8]) -> Option<f64> {
+/// `XResolution` and `YResolution` in the unit of `ResolutionUnit` (inches where it is missing).
+#[cfg(feature = "formats")]
+pub(super) fn exif_density(raw: &[u8]) -> Option<Density> {
     use exif::{In, Tag};
     let raw = raw.strip_prefix(b"Exif\0\0").unwrap_or(raw);
     let data = exif::Reader::new().read_raw(raw.to_vec()).ok()?;
     let unit = data.get_field(Tag::ResolutionUnit, In::PRIMARY).and_then(|f| f.value.get_uint(0)).unwrap_or(2);
-    match &data.get_field(Tag::XResolution, In::PRIMARY)?.value {
-        exif::Value::Rational(values) => tiff_dpi(values.first()?.to_f64(), unit),
+    let value = |tag| match &data.get_field(tag, In::PRIMARY)?.value {
+        exif::Value::Rational(values) => Some(values.first()?.to_f64()),
         _ => None,
-    }
+    };
+    tiff_density(value(Tag::XResolution), value(Tag::YResolution), unit)
+}
+
+#[cfg(not(feature = "formats"))]
+pub(super) fn exif_density(_raw: &[u8]) -> Option<Density> {
+    None
 }
 
 #[cfg(test)]
@@ -85,14 +102,17 @@ mod tests {
 
     #[test]
     fn units_and_nonsense() {
-        assert_eq!(tiff_dpi(300.0, 2), Some(300.0));
-        assert_eq!(tiff_dpi(118.110236, 3), Some(300.0));
-        assert_eq!(tiff_dpi(118.5, 3), Some(118.5 * 2.54));
-        assert_eq!(tiff_dpi(300.0, 1), None);
-        assert_eq!(tiff_dpi(f64::NAN, 2), None);
-        assert_eq!(tiff_dpi(0.0, 2), None);
+        let dpi = |value, unit| tiff_density(Some(value), None, unit).and_then(|density| density.dpi());
+        assert_eq!(dpi(300.0, 2), Some(300.0));
+        assert_eq!(dpi(118.110236, 3), Some(300.0));
+        assert_eq!(dpi(118.5, 3), Some(118.5 * 2.54));
+        assert_eq!(dpi(300.0, 1), None);
+        assert_eq!(dpi(f64::NAN, 2), None);
+        assert_eq!(dpi(0.0, 2), None);
+        assert_eq!(tiff_density(Some(2.0), Some(1.0), 1), Density::shape(2.0, 1.0));
     }
 
+    #[cfg(feature = "formats")]
     #[test]
     fn exif_is_read_with_and_without_its_prefix() {
         // Big-endian, one directory with XResolution (rational at 50) and ResolutionUnit.
@@ -101,10 +121,11 @@ mod tests {
         raw.extend([0x01, 0x28, 0, 3, 0, 0, 0, 1, 0, 3, 0, 0]);
         raw.extend([0, 0, 0, 0]);
         raw.extend([0, 0, 0, 100, 0, 0, 0, 1]);
-        assert_eq!(exif_dpi(&raw), Some(254.0));
-        assert_eq!(exif_dpi(&[b"Exif\0\0".to_vec(), raw.clone()].concat()), Some(254.0));
+        let dpi = |raw: &[u8]| exif_density(raw).and_then(|density| density.dpi());
+        assert_eq!(dpi(&raw), Some(254.0));
+        assert_eq!(dpi(&[b"Exif\0\0".to_vec(), raw.clone()].concat()), Some(254.0));
         for end in 0..raw.len() {
-            exif_dpi(&raw[..end]);
+            exif_density(&raw[..end]);
         }
     }
 }

@@ -6,10 +6,14 @@ mod strokes;
 
 pub use strokes::drawing;
 
-use super::{Input, LoadOptions, bitmap, undecodable};
+use super::plan::Plan;
+use super::{Dpi, Input, LoadOptions, undecodable};
+use crate::drawing::Drawing;
 use crate::error::{Error, Result};
+use crate::place::Frame;
 use flate2::read::GzDecoder;
 use image::{DynamicImage, ImageReader, RgbaImage};
+use kurbo::{Affine, Rect, Shape, Vec2};
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
@@ -45,16 +49,34 @@ pub(super) fn load(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<In
     let scale = scale(&tree, options);
     let canvas = canvas(&tree, scale);
     options.check_size(name, canvas.0, canvas.1)?;
-    let image = render(&tree, scale, canvas)
-        .ok_or_else(|| undecodable(name, format!("a rendering of {} x {} pixels is too large", canvas.0, canvas.1)))?;
+    let too_large = || undecodable(name, format!("a rendering of {} x {} pixels is too large", canvas.0, canvas.1));
+    let size = (u32::try_from(canvas.0).map_err(|_| too_large())?, u32::try_from(canvas.1).map_err(|_| too_large())?);
+    let plan = Plan::rendered(name, size, options.dpi.map_or(scale * CSS_DPI, Dpi::finer), options)?;
+    let image = render(&tree, scale, size).ok_or_else(too_large)?;
     if image.as_raw().iter().all(|&v| v == 255) {
         return Err(Error::NothingVisible { input: name.into() });
     }
-    let dpi = options.dpi.unwrap_or(scale * CSS_DPI);
-    let scan = bitmap::scan(&DynamicImage::ImageRgba8(image), Some(dpi));
+    let scan = plan.scan(DynamicImage::ImageRgba8(image));
     let mut drawing = drawing(&tree, scale);
-    drawing.dpi = Some(dpi);
-    Ok(Input { scan, drawing: Some(drawing) })
+    drawing.dpi = scan.dpi;
+    if let Some(corner) = plan.corner() {
+        crop(&mut drawing, corner, scan.gray.size());
+    }
+    let frame = frame(&text, &tree).filter(|_| plan.corner().is_none());
+    Ok(Input { scan, drawing: Some(drawing), frame })
+}
+
+/// How an SVG says its size. Without a view box, units are CSS pixels.
+fn frame(text: &[u8], tree: &Tree) -> Option<Frame> {
+    let options = ParsingOptions { allow_dtd: true, ..Default::default() };
+    let document = Document::parse_with_options(std::str::from_utf8(text).ok()?, options).ok()?;
+    let root = document.root_element();
+    let attribute = |name: &str| root.attribute(name).map(str::to_owned);
+    let size = tree.size();
+    let whole = [0.0, 0.0, f64::from(size.width()), f64::from(size.height())];
+    let own = root.attribute("viewBox").and_then(|text| text.parse::<svgtypes::ViewBox>().ok());
+    let view_box = own.map_or(whole, |own| [own.x, own.y, own.w, own.h]);
+    Some(Frame { width: attribute("width"), height: attribute("height"), view_box })
 }
 
 fn unpack<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, [u8]>> {
@@ -126,7 +148,7 @@ fn scale(tree: &Tree, options: &LoadOptions) -> f64 {
     let longer = f64::from(tree.size().width().max(tree.size().height()));
     match (options.size, options.dpi) {
         (Some(size), _) => f64::from(size) / longer,
-        (None, Some(dpi)) => dpi / CSS_DPI,
+        (None, Some(dpi)) => dpi.finer() / CSS_DPI,
         (None, None) => (SMALLEST_SIDE / longer).max(1.0),
     }
 }
@@ -138,9 +160,25 @@ fn canvas(tree: &Tree, scale: f64) -> (u64, u64) {
     (side(tree.size().width()), side(tree.size().height()))
 }
 
+/// Makes a drawing that of the part of its canvas that has a corner and a size in pixels: what lies wholly outside is
+/// left out, all else is kept whole.
+fn crop(drawing: &mut Drawing, corner: (u32, u32), size: (usize, usize)) {
+    let shift = Vec2::new(-f64::from(corner.0), -f64::from(corner.1));
+    let part = Rect::new(0.0, 0.0, size.0 as f64, size.1 as f64);
+    (drawing.width, drawing.height) = (part.width(), part.height());
+    drawing.strokes.retain_mut(|stroke| {
+        stroke.centreline = stroke.centreline.transformed(1.0, shift);
+        let bounds = stroke.centreline.to_path().bounding_box().inflate(stroke.width / 2.0, stroke.width / 2.0);
+        bounds.overlaps(part)
+    });
+    drawing.fills.retain_mut(|fill| {
+        fill.outline.apply_affine(Affine::translate(shift));
+        fill.outline.bounding_box().overlaps(part)
+    });
+}
+
 /// The rendering over white; `None` where the canvas cannot be had.
-fn render(tree: &Tree, scale: f64, canvas: (u64, u64)) -> Option<RgbaImage> {
-    let (width, height) = (u32::try_from(canvas.0).ok()?, u32::try_from(canvas.1).ok()?);
+fn render(tree: &Tree, scale: f64, (width, height): (u32, u32)) -> Option<RgbaImage> {
     let mut pixmap = Pixmap::new(width, height)?;
     pixmap.fill(Color::WHITE);
     resvg::render(tree, Transform::from_scale(scale as f32, scale as f32), &mut pixmap.as_mut());
@@ -164,7 +202,7 @@ mod tests {
             let text = format!("<svg xmlns='http://www.w3.org/2000/svg' width='{w}' height='{h}'/>");
             Tree::from_str(&text, &usvg::Options::default()).unwrap()
         };
-        let options = |size, dpi| LoadOptions { size, dpi, ..LoadOptions::default() };
+        let options = |size, dpi: Option<f64>| LoadOptions { size, dpi: dpi.map(Into::into), ..LoadOptions::default() };
         assert_eq!(canvas(&tree(24.0, 12.0), scale(&tree(24.0, 12.0), &options(None, None))), (512, 256));
         assert_eq!(scale(&tree(2000.0, 100.0), &options(None, None)), 1.0);
         assert_eq!(scale(&tree(24.0, 12.0), &options(None, Some(192.0))), 2.0);

@@ -7,7 +7,7 @@ use crate::field::PolyVectorField;
 use crate::hooks::Observer;
 use crate::load::Scan;
 use crate::pipeline::Vectorizer;
-use crate::write::{SvgOptions, to_svg};
+use crate::write::{WriteOptions, to_svg};
 use std::time::Instant;
 
 /// The figures of one trace; see [`crate::metrics`] for their definitions.
@@ -83,7 +83,7 @@ pub fn measure(vectorizer: &Vectorizer, scan: &Scan, truth: &Truth) -> Result<Me
     let field = field.ok_or(Error::FieldSize { field: (0, 0), image: (width, height) })?;
     Ok(Measurement {
         field: truth.angular_error(&field)?,
-        lines: truth.score(&to_svg(&drawing, &SvgOptions::default()))?,
+        lines: truth.score(&to_svg(&drawing, &WriteOptions::default()))?,
         seconds,
         field_seconds: seen.field_seconds,
         megapixels: (width * height) as f64 / 1e6,

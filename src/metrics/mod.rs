@@ -10,7 +10,7 @@
 //! | `chamfer` | mean distance of the drawings' lengths to the other drawing, the mean of both ways |
 //! | `junction_f1`, `endpoint_f1` | points where lines meet and where they end ([`nodes`]), paired within 1.25 pens, and at least 3 px |
 //! | `integrity` | share of the true length that is followed by one path, the best for its stroke: near it and within 35 degrees of its direction |
-//! | `purity` | the same the other way round: share of the traced length that keeps to one true stroke |
+//! | `purity` | the same the other way round: share of the traced length that keeps to one true stroke. For both, strokes of either drawing that end at one point where nothing else is are joined first |
 //! | `iou` | inked pixels of both over inked pixels of either |
 //! | `paths_ratio`, `segs_ratio` | traced over true number of strokes, and of pieces; a circle is four pieces |
 //! | `field_s_per_mp` | seconds that the field of it took for each million pixels |
@@ -24,6 +24,7 @@ mod cloud;
 mod distance;
 mod field;
 mod follow;
+mod join;
 mod matching;
 mod measure;
 mod nodes;
@@ -47,6 +48,7 @@ use chain::{Chain, chains};
 use cloud::Cloud;
 use distance::Distances;
 use follow::follow;
+use join::joined;
 use matching::f1;
 
 /// The figures of a trace.
@@ -129,8 +131,9 @@ impl Truth {
             score.chamfer = distances.chamfer();
             score.junction_f1 = f1(&self.nodes.junctions, &nodes.junctions, radius);
             score.endpoint_f1 = f1(&self.nodes.ends, &nodes.ends, radius);
-            score.integrity = follow(&self.cloud, &cloud, self.pen);
-            score.purity = follow(&cloud, &self.cloud, self.pen);
+            let [truth, trace] = [&self.chains, &traced.chains].map(|chains| Cloud::new(&joined(chains, self.pen)));
+            score.integrity = follow(&truth, &trace, self.pen);
+            score.purity = follow(&trace, &truth, self.pen);
         }
         Ok(score)
     }
@@ -155,7 +158,7 @@ impl Traced {
     fn read(svg: &str, (width, height): (usize, usize)) -> Result<Self> {
         // The raster itself was bearable.
         let size = u32::try_from(width.max(height)).ok();
-        let options = LoadOptions { size, max_pixels: u64::MAX, dpi: None };
+        let options = LoadOptions { size, max_pixels: u64::MAX, ..LoadOptions::default() };
         let input = match load_bytes("trace", svg.as_bytes(), &options) {
             Err(Error::NothingVisible { .. }) => {
                 return Ok(Self { chains: Vec::new(), ink: Mask::filled(width, height, false) });

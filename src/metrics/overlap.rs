@@ -1,15 +1,14 @@
 //! Overlap of the ink.
 
 use super::chain::Chain;
-use crate::drawing::{Centreline, Color, Drawing, Segment, Stroke};
+use crate::drawing::{Centreline, Drawing, Segment, Stroke};
 use crate::raster::{Mask, Raster};
 use crate::render::render;
 use kurbo::Line;
 
 /// The pixels at least half of which are inked by strokes with round caps and joins.
 pub(super) fn ink(chains: &[Chain], (width, height): (usize, usize)) -> Mask {
-    let strokes =
-        chains.iter().map(|c| Stroke { centreline: centreline(c), width: c.width, color: Color::BLACK, dashes: None });
+    let strokes = chains.iter().map(|c| Stroke::new(centreline(c), c.width));
     let mut drawing = Drawing::new(width as f64, height as f64);
     drawing.strokes = strokes.collect();
     render(&drawing).map(|coverage| coverage >= 0.5)

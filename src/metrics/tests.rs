@@ -1,8 +1,8 @@
 //! Figures against closed forms.
 
 use super::*;
-use crate::drawing::{Centreline, Color, Segment, Stroke};
-use crate::write::{SvgOptions, to_svg};
+use crate::drawing::{Centreline, Segment, Stroke};
+use crate::write::{WriteOptions, to_svg};
 use kurbo::{Circle, Line, Point, Vec2};
 
 const SIZE: (usize, usize) = (240, 200);
@@ -11,12 +11,7 @@ const MIDDLE: Point = Point::new(120.0, 100.0);
 fn drawing(paths: &[Vec<Point>], width: f64) -> Drawing {
     let mut drawing = Drawing::new(SIZE.0 as f64, SIZE.1 as f64);
     let segments = |p: &Vec<Point>| p.windows(2).map(|p| Segment::Line(Line::new(p[0], p[1]))).collect();
-    let stroke = |p| Stroke {
-        centreline: Centreline::Path { segments: segments(p), closed: false },
-        width,
-        color: Color::BLACK,
-        dashes: None,
-    };
+    let stroke = |p| Stroke::new(Centreline::Path { segments: segments(p), closed: false }, width);
     drawing.strokes = paths.iter().map(stroke).collect();
     drawing
 }
@@ -24,7 +19,7 @@ fn drawing(paths: &[Vec<Point>], width: f64) -> Drawing {
 fn circle(radius: f64) -> Drawing {
     let mut drawing = drawing(&[], 3.0);
     let centreline = Centreline::Circle(Circle::new(MIDDLE, radius));
-    drawing.strokes.push(Stroke { centreline, width: 3.0, color: Color::BLACK, dashes: None });
+    drawing.strokes.push(Stroke::new(centreline, 3.0));
     drawing
 }
 
@@ -40,7 +35,7 @@ fn truth(drawing: &Drawing) -> Truth {
 }
 
 fn svg(drawing: &Drawing) -> String {
-    to_svg(drawing, &SvgOptions { precision: 6, ..SvgOptions::default() })
+    to_svg(drawing, &WriteOptions { precision: 6, ..WriteOptions::default() })
 }
 
 fn score(true_strokes: &Drawing, traced: &Drawing) -> LineScore {
@@ -100,8 +95,9 @@ fn a_missing_part_lowers_recall_alone() {
 fn a_stroke_in_two_keeps_its_longer_part() {
     for cut in [0.1, 0.3, 0.5, 0.9] {
         let [a, b] = line(MIDDLE, 20.0, 150.0)[..] else { unreachable!() };
-        let middle = a.lerp(b, cut);
-        let (one, two) = (drawing(&[vec![a, b]], 3.0), drawing(&[vec![a, middle], vec![middle, b]], 3.0));
+        // Ends further apart than half a pen.
+        let around = [-1.0, 1.0].map(|side| a.lerp(b, cut) + 1.2 * side * (b - a).normalize());
+        let (one, two) = (drawing(&[vec![a, b]], 3.0), drawing(&[vec![a, around[0]], vec![around[1], b]], 3.0));
         let cut_in_two = score(&one, &two);
         assert!(close(cut_in_two.integrity, f64::max(cut, 1.0 - cut), 0.03), "{cut}: {cut_in_two:?}");
         assert!(close(cut_in_two.purity, 1.0, 1e-9) && cut_in_two.paths_ratio == 2.0);
@@ -111,10 +107,25 @@ fn a_stroke_in_two_keeps_its_longer_part() {
 }
 
 #[test]
+fn strokes_that_end_at_one_point_are_one_unless_another_passes_there() {
+    let [a, b] = line(MIDDLE, 20.0, 150.0)[..] else { unreachable!() };
+    let (middle, across) = (a.midpoint(b), line(MIDDLE, 110.0, 60.0));
+    let two = || vec![vec![a, middle], vec![middle, b]];
+    let joined = score(&drawing(&[vec![a, b]], 3.0), &drawing(&two(), 3.0));
+    assert!(joined.integrity == 1.0 && joined.purity == 1.0 && joined.paths_ratio == 2.0, "{joined:?}");
+    let crossed = |mut lines: Vec<Vec<Point>>| {
+        lines.push(across.clone());
+        drawing(&lines, 3.0)
+    };
+    let apart = score(&crossed(vec![vec![a, b]]), &crossed(two()));
+    assert!(close(apart.integrity, (75.0 + 60.0) / 210.0, 0.03), "{apart:?}");
+}
+
+#[test]
 fn a_line_across_another_does_not_follow_it() {
     for (degrees, follows) in [(20.0, true), (50.0, false), (90.0, false)] {
-        let along = drawing(&[line(MIDDLE, 0.0, 3.0)], 6.0);
-        let across = drawing(&[line(MIDDLE, degrees, 3.0)], 6.0);
+        let along = drawing(&[line(MIDDLE, 0.0, 5.0)], 6.0);
+        let across = drawing(&[line(MIDDLE, degrees, 5.0)], 6.0);
         assert_eq!(score(&along, &across).integrity, if follows { 1.0 } else { 0.0 }, "{degrees}");
     }
 }

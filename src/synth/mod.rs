@@ -13,7 +13,7 @@ pub(crate) use placed::mapped;
 pub use placed::placed;
 pub use scan::{ScanStyle, clean_ink, scan};
 
-use crate::drawing::{Centreline, Color, Drawing, Stroke};
+use crate::drawing::{Centreline, Drawing, Stroke};
 use kurbo::Point;
 use rand::Rng;
 use shapes::{arc_from, open, within};
@@ -57,7 +57,7 @@ struct Sheet {
 impl Sheet {
     fn add(&mut self, rng: &mut impl Rng, centreline: Centreline) {
         let width = self.style.pen(rng);
-        self.drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
+        self.drawing.strokes.push(Stroke::new(centreline, width));
     }
 
     /// A place on the canvas, or a little outside.
@@ -92,7 +92,7 @@ pub fn primitives(rng: &mut impl Rng, size: usize, count: usize) -> Drawing {
         let (angle, length) = (within(rng, 0.0, TAU), within(rng, 0.3, 0.9) * side);
         let bend = if rng.random_bool(0.5) { 0.0 } else { within(rng, -2.5, 2.5) };
         let centreline = open(vec![arc_from(start, angle, length, bend)]);
-        drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
+        drawing.strokes.push(Stroke::new(centreline, width));
     }
     drawing
 }

@@ -39,11 +39,9 @@ pub fn placed(rng: &mut impl Rng, drawing: &Drawing, size: usize) -> Option<Draw
     sheet.strokes = drawing
         .strokes
         .iter()
-        .map(|s| Stroke {
-            centreline: mapped(&s.centreline, map),
-            width: (s.width * thinner * (wobble * noise::gaussian(rng)).exp()).max(1.0),
-            color: s.color,
-            dashes: None,
+        .map(|s| {
+            let width = (s.width * thinner * (wobble * noise::gaussian(rng)).exp()).max(1.0);
+            Stroke { color: s.color, ..Stroke::new(mapped(&s.centreline, map), width) }
         })
         .collect();
     Some(sheet)
@@ -78,7 +76,6 @@ fn pieces(segment: &Segment, map: Affine) -> Vec<Segment> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Color;
     use kurbo::{Arc, Line};
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
@@ -89,7 +86,7 @@ mod tests {
         let line = Segment::Line(Line::new((10.0, 40.0), (60.0, 40.0)));
         let arc = Segment::Arc(Arc::new((60.0, 30.0), (10.0, 10.0), FRAC_PI_2, -FRAC_PI_2, 0.0));
         let centreline = Centreline::Path { segments: vec![line, arc], closed: false };
-        original.strokes.push(Stroke { centreline, width: 4.0, color: Color::BLACK, dashes: None });
+        original.strokes.push(Stroke::new(centreline, 4.0));
         for seed in 0..50 {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let sheet = placed(&mut rng, &original, 144).unwrap();

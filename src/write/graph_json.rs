@@ -1,11 +1,13 @@
 #![doc = include_str!("graph_json.md")]
 
+use super::document::{Document, WriteOptions};
+use super::{Format, lacking};
 use crate::drawing::{Color, Dashes, Fill};
 use crate::error::{Error, Result};
 use crate::graph::{Dot, Edge, Junction, JunctionKind, Page, StrokeGraph, Trail};
 use kurbo::{BezPath, PathEl, Point, Vec2};
 use petgraph::stable_graph::{EdgeIndex, NodeIndex};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The member `format` of every file.
@@ -22,11 +24,32 @@ const FARTHEST: f64 = 1e6;
 /// An edge whose end is farther from its node than this many pixels follows the node.
 const MOVED: f64 = 1e-3;
 
+/// The graph that a drawing was made of, as [`to_json`] writes it.
+pub(super) struct GraphJson;
+
+impl Format for GraphJson {
+    fn name(&self) -> &'static str {
+        "json"
+    }
+
+    fn has_profiles(&self) -> bool {
+        true
+    }
+
+    fn encode(&self, document: &Document, options: &WriteOptions) -> Result<Vec<u8>> {
+        let graph = document.graph.ok_or_else(|| lacking("json", "the stroke graph that the drawing was made of"))?;
+        let origin = serde_json::value::RawValue::from_string(options.origin()).ok();
+        Ok(text(graph, origin).into_bytes())
+    }
+}
+
 /// The members before the lists.
 #[derive(Serialize, Deserialize)]
 struct Head {
     format: String,
     version: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    origin: Option<Box<serde_json::value::RawValue>>,
     width: f64,
     height: f64,
     #[serde(default)]
@@ -73,7 +96,7 @@ struct StrokeItem {
     #[serde(default)]
     closed: bool,
     #[serde(default)]
-    color: Hex,
+    color: Color,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     dashes: Option<DashItem>,
 }
@@ -92,14 +115,14 @@ struct DotItem {
     y: f64,
     diameter: f64,
     #[serde(default)]
-    color: Hex,
+    color: Color,
 }
 
 #[derive(Serialize, Deserialize)]
 struct FillItem {
     rings: Vec<Vec<[f64; 2]>>,
     #[serde(default)]
-    color: Hex,
+    color: Color,
 }
 
 /// The lists.
@@ -118,23 +141,6 @@ fn one() -> f64 {
     1.0
 }
 
-/// A colour as `#rrggbb`.
-#[derive(Clone, Copy, Default)]
-struct Hex(Color);
-
-impl Serialize for Hex {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.serialize_str(&self.0.to_string())
-    }
-}
-
-impl<'de> Deserialize<'de> for Hex {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        let text = String::deserialize(deserializer)?;
-        text.parse().map(Hex).map_err(serde::de::Error::custom)
-    }
-}
-
 fn round(value: f64, decimals: i32) -> f64 {
     let unit = 10f64.powi(decimals);
     (value * unit).round() / unit
@@ -142,12 +148,17 @@ fn round(value: f64, decimals: i32) -> f64 {
 
 /// A graph as JSON text: a head, and one line for each item of the lists; the same graph gives the same bytes.
 pub fn to_json(graph: &StrokeGraph) -> String {
+    text(graph, None)
+}
+
+fn text(graph: &StrokeGraph, origin: Option<Box<serde_json::value::RawValue>>) -> String {
     let page = &graph.page;
     let to_scan = |length: f64| round(length / page.scale, DECIMALS);
     let pair = |p: Point| [to_scan(p.x), to_scan(p.y)];
     let head = Head {
         format: FORMAT.into(),
         version: VERSION,
+        origin,
         width: page.width,
         height: page.height,
         dpi: page.dpi,
@@ -179,15 +190,15 @@ pub fn to_json(graph: &StrokeGraph) -> String {
             gap: to_scan(gap),
             offset: to_scan(offset),
         });
-        line(&StrokeItem { edges, closed: trail.closed, color: Hex(trail.color), dashes })
+        line(&StrokeItem { edges, closed: trail.closed, color: trail.color, dashes })
     });
     let dots = graph.dots.iter().map(|dot| {
         let [x, y] = pair(dot.centre);
-        line(&DotItem { x, y, diameter: to_scan(dot.diameter), color: Hex(dot.color) })
+        line(&DotItem { x, y, diameter: to_scan(dot.diameter), color: dot.color })
     });
     let fills = graph.fills.iter().map(|fill| {
         let rings = fill.rings().into_iter().map(|ring| ring.into_iter().map(pair).collect()).collect();
-        line(&FillItem { rings, color: Hex(fill.color) })
+        line(&FillItem { rings, color: fill.color })
     });
     let head = line(&head);
     let lists = [
@@ -295,7 +306,7 @@ impl Reader {
         for (i, item) in lists.dots.iter().enumerate() {
             let centre = self.point(&format!("dots[{i}]"), [item.x, item.y])?;
             let diameter = self.scale * within(format!("dots[{i}].diameter"), item.diameter, 0.01, FARTHEST)?;
-            self.graph.dots.push(Dot { centre, diameter, color: item.color.0 });
+            self.graph.dots.push(Dot { centre, diameter, color: item.color });
         }
         for (i, item) in lists.fills.iter().enumerate() {
             let fill = self.fill(&format!("fills[{i}]"), item)?;
@@ -389,7 +400,7 @@ impl Reader {
             within(format!("{place}.dashes.offset"), offset, 0.0, FARTHEST)?;
             dashes = Some(Dashes { dash, gap, offset }.scaled(self.scale));
         }
-        Ok(Trail { edges, closed: item.closed, color: item.color.0, dashes })
+        Ok(Trail { edges, closed: item.closed, color: item.color, dashes })
     }
 
     fn fill(&self, place: &str, item: &FillItem) -> std::result::Result<Fill, Wrong> {
@@ -405,7 +416,7 @@ impl Reader {
             }
             outline.close_path();
         }
-        Ok(Fill { outline, color: item.color.0 })
+        Ok(Fill { outline, color: item.color })
     }
 }
 

@@ -94,12 +94,12 @@ fn exchange(ends: &[[Point; 2]], order: &mut [(usize, bool)]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::{Centreline, Color, Segment};
+    use crate::drawing::{Centreline, Segment};
     use kurbo::Line;
 
     fn stroke(a: (f64, f64), b: (f64, f64)) -> Stroke {
         let centreline = Centreline::Path { segments: vec![Segment::Line(Line::new(a, b))], closed: false };
-        Stroke { centreline, width: 1.0, color: Color::BLACK, dashes: None }
+        Stroke::new(centreline, 1.0)
     }
 
     /// A fixed sequence of numbers in `[0, 1)` that looks random.

@@ -16,6 +16,32 @@ fn files_go_to_the_folder() {
 }
 
 #[test]
+fn without_a_folder_outputs_lie_beside_their_inputs() {
+    let desk = Desk::with(&["a.png", "sub/b.png", "in/c.png"]);
+    desk.trace(&["a.png", "sub/b.png", "in"]).done();
+    assert_eq!(desk.files(""), ["a.png", "a.svg", "in/c.png", "in/c.svg", "sub/b.png", "sub/b.svg"]);
+    desk.trace(&["*.png", "--format", "dxf"]).done();
+    assert!(desk.read("a.dxf").contains("ENTITIES"));
+}
+
+#[test]
+fn inputs_of_one_name_and_several_extensions_get_an_output_each() {
+    let desk = Desk::with(&["in/a.png", "in/b.png"]);
+    image::open(desk.path("in/a.png")).unwrap().save(desk.path("in/a.bmp")).unwrap();
+    desk.trace(&["in", "-o", "out"]).done();
+    assert_eq!(desk.files("out"), ["a.bmp.svg", "a.png.svg", "b.svg"]);
+}
+
+#[test]
+fn one_file_takes_what_a_batch_takes() {
+    let desk = Desk::with(&["a.png"]);
+    let run = desk.trace(&["a.png", "-o", "out.svg", "--json", "--jobs", "1", "--timeout", "60"]);
+    assert_eq!(run.done().count("traced"), 1);
+    assert_whole(&desk.read("out.svg"));
+    assert_eq!(desk.trace(&["a.png", "-o", "out.svg", "--json"]).done().count("skipped"), 1);
+}
+
+#[test]
 fn a_trace_is_the_same_alone_and_in_a_batch() {
     let desk = Desk::with(&["a.png", "b.png"]);
     desk.trace(&["a.png", "b.png", "-o", "out", "--detail", "0.2", "--precision", "3"]).done();
@@ -162,10 +188,7 @@ fn what_makes_no_batch_is_wrong_usage() {
     let desk = Desk::with(&["a.png", "b.png", "in/c.png"]);
     fs::create_dir(desk.path("none")).unwrap();
     let before = desk.files("");
-    let cases: [(&[&str], &str); 13] = [
-        (&["a.png", "b.png"], "-o DIR"),
-        (&["in"], "-o DIR"),
-        (&["*.png"], "-o DIR"),
+    let cases: [(&[&str], &str); 10] = [
         (&["a.png", "b.png", "-o", "-"], "standard output"),
         (&["a.png", "-", "-o", "out"], "standard input"),
         (&["a.png", "b.png", "-o", "out.svg"], "out.svg"),

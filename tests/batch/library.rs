@@ -3,7 +3,7 @@
 use crate::common::draw::{line, scan, sheet};
 use crate::desk::{Desk, large};
 use fieldtrace::Error;
-use fieldtrace::batch::{Batch, Event, FileTracer, Plan, Share, Traced};
+use fieldtrace::batch::{Batch, Destination, Event, FileTracer, Plan, Share, Traced};
 use fieldtrace::cancel::Cancel;
 use fieldtrace::clean::LineImage;
 use fieldtrace::drawing::Drawing;
@@ -95,7 +95,7 @@ fn a_panic_is_the_failure_of_its_file_alone() {
     let desk = Desk::with_many(8);
     desk.picture("in/003.png", &sheet(40, 40, vec![line((8.0, 8.0), (32.0, 30.0), 3.0)]));
     let tracer = FileTracer::new(vectorizer().with_estimator(Fragile));
-    let plan = Plan::new(&[desk.path("in")], &desk.path("out"), false).unwrap();
+    let plan = Plan::new(&[desk.path("in")], &Destination::folder(desk.path("out")), false).unwrap();
     for jobs in [1, 3] {
         let outcomes = batch(jobs).run(&plan.jobs, |job, cancel| tracer.trace(job, cancel), |_| {}).unwrap();
         for (i, outcome) in outcomes.iter().enumerate() {
@@ -157,7 +157,7 @@ fn the_time_of_a_file_is_its_own() {
     let desk = Desk::with_many(4);
     desk.picture("in/net.png", &large());
     let tracer = FileTracer::new(vectorizer());
-    let plan = Plan::new(&[desk.path("in")], &desk.path("out"), false).unwrap();
+    let plan = Plan::new(&[desk.path("in")], &Destination::folder(desk.path("out")), false).unwrap();
     let limit = Duration::from_nanos(1);
     let rushed = Batch { timeout: Some(limit), ..batch(2) };
     for outcome in rushed.run(&plan.jobs, |job, cancel| tracer.trace(job, cancel), |_| {}).unwrap() {
@@ -233,7 +233,7 @@ fn every_stage_polls_the_token() {
 fn shares_divide_any_list() {
     let desk = Desk::new();
     (0..23).for_each(|i| desk.put(&format!("in/{i}.png"), "x"));
-    let plan = || Plan::new(&[desk.path("in")], &desk.path("out"), false).unwrap();
+    let plan = || Plan::new(&[desk.path("in")], &Destination::folder(desk.path("out")), false).unwrap();
     for count in [1, 2, 5, 23, 40] {
         let share = |number: usize| plan().share(format!("{number}/{count}").parse::<Share>().unwrap()).jobs;
         let mut all: Vec<_> = (1..=count).flat_map(share).collect();

@@ -15,7 +15,7 @@ fn records_tell_everything_in_the_order_of_the_inputs() {
     let records = run.records();
     let inputs: Vec<&str> = records.iter().map(|r| r["input"].as_str().unwrap()).collect();
     assert_eq!(inputs, ["in/a.png", "in/b.png", "in/bad.png", "in/blank.png", "in/c/d.png"]);
-    let keys = ["input", "output", "status", "seconds", "strokes", "junctions", "warnings", "error"];
+    let keys = ["input", "output", "status", "seconds", "strokes", "junctions", "warnings", "error", "origin"];
     for record in &records {
         let found: BTreeSet<&str> = record.as_object().unwrap().keys().map(String::as_str).collect();
         assert_eq!(found, BTreeSet::from(keys));
@@ -26,6 +26,7 @@ fn records_tell_everything_in_the_order_of_the_inputs() {
     assert_eq!((&cross["status"], &cross["output"]), (&"traced".into(), &"out/b.svg".into()));
     assert_eq!((&cross["strokes"], &cross["junctions"]), (&2.into(), &1.into()));
     assert!(cross["error"].is_null() && cross["warnings"].as_array().unwrap().is_empty());
+    assert_eq!(cross["origin"]["program"], concat!("fieldtrace ", env!("CARGO_PKG_VERSION")));
     let bad = &records[2];
     assert_eq!(bad["status"], "failed");
     assert!(bad["error"].as_str().unwrap().contains("in/bad.png: this is not an image") && bad["strokes"].is_null());
@@ -50,6 +51,32 @@ fn newer_outputs_are_skipped_unless_forced() {
     desk.put("out/c.svg", "");
     assert_eq!(statuses(&words), ["traced", "traced", "traced", "skipped"]);
     assert!(!desk.read("out/c.svg").is_empty());
+}
+
+#[test]
+fn other_options_are_another_trace_and_edited_outputs_are_kept() {
+    let desk = Desk::with(&["in/a.png", "in/b.png"]);
+    let statuses = |words: &[&str]| -> Vec<String> {
+        desk.trace(&[&["in", "-o", "out", "--json"], words].concat()).statuses().into_iter().map(|(_, s)| s).collect()
+    };
+    assert_eq!(statuses(&[]), ["traced"; 2]);
+    assert_eq!(statuses(&["--detail", "0.2"]), ["traced"; 2]);
+    assert_eq!(statuses(&["--detail", "0.2"]), ["skipped"; 2]);
+    let edited = desk.read("out/a.svg").replace("</svg>", "<!-- mine --></svg>");
+    desk.put("out/a.svg", &edited);
+    assert_eq!(statuses(&["--detail", "0.2"]), ["skipped"; 2]);
+    assert_eq!(statuses(&["--detail", "0.3"]), ["failed", "traced"]);
+    assert_eq!(desk.read("out/a.svg"), edited);
+    assert_eq!(statuses(&["--detail", "0.3", "--force"]), ["traced"; 2]);
+}
+
+#[test]
+fn files_of_other_kinds_are_counted() {
+    let desk = Desk::with(&["in/a.png"]);
+    desk.put("in/notes.txt", "notes");
+    desk.put("in/table.ods", "table");
+    let run = desk.trace(&["in", "-o", "out"]);
+    assert!(run.done().stderr.contains("1 traced, 2 of other kinds left out"), "{}", run.stderr);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use fieldtrace::load::{LoadOptions, Scan, load};
 use fieldtrace::metrics::Truth;
 use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fs;
@@ -77,7 +77,7 @@ fn vectorizer() -> Result<Vectorizer> {
 
 fn figures(vectorizer: &Vectorizer, scan: &Scan, truth: &Truth, observer: &mut dyn Observer) -> Result<Figures> {
     let drawing = vectorizer.trace_observed(scan, observer)?;
-    let score = truth.score(&to_svg(&drawing, &SvgOptions::default()))?;
+    let score = truth.score(&to_svg(&drawing, &WriteOptions::default()))?;
     Ok([score.junction_f1, score.endpoint_f1, score.integrity, score.purity])
 }
 

@@ -6,7 +6,7 @@ use divan::counter::ItemsCount;
 use fieldtrace::load::{LoadOptions, load_bytes};
 use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use image::{GrayImage, ImageFormat, Luma};
 use std::io::Cursor;
 
@@ -24,6 +24,6 @@ fn whole(bencher: Bencher) {
     let (png, vectorizer) = (png(), Vectorizer::new(Options::default()).expect("the defaults are in range"));
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench(|| {
         let scan = load_bytes("page", &png, &LoadOptions::default()).expect("it was just written").scan;
-        to_svg(&vectorizer.trace(&scan).expect("the built-in estimator never fails"), &SvgOptions::default())
+        to_svg(&vectorizer.trace(&scan).expect("the built-in estimator never fails"), &WriteOptions::default())
     });
 }

@@ -48,7 +48,7 @@ pub fn dot(center: impl Into<Point>, diameter: f64) -> Stroke {
 }
 
 fn stroke(centreline: Centreline, width: f64) -> Stroke {
-    Stroke { centreline, width, color: Color::BLACK, dashes: None }
+    Stroke::new(centreline, width)
 }
 
 /// The point at a distance and an angle in degrees, clockwise on the screen.

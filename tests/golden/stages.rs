@@ -11,7 +11,7 @@ use fieldtrace::load::Scan;
 use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
 use fieldtrace::streamline::Streamline;
-use fieldtrace::write::{SvgOptions, to_svg};
+use fieldtrace::write::{WriteOptions, to_svg};
 use kurbo::{BezPath, Point};
 use serde_json::{Value, json};
 
@@ -233,7 +233,7 @@ pub fn compare_graph(before: &str, now: &str) -> Result<(), String> {
 
 /// The SVG as it is written.
 pub fn fit_text(stages: &Stages) -> String {
-    to_svg(&stages.drawing, &SvgOptions::default())
+    to_svg(&stages.drawing, &WriteOptions::default())
 }
 
 /// As many strokes but for a twentieth and pieces but for an eighth, 0.1 pixels apart in the mean and 2 at most, and

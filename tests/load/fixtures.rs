@@ -97,7 +97,7 @@ pub fn tiff(big_endian: bool, fields: &[(u16, Field)], strip: &[u8]) -> Vec<u8> 
     let u16b = |v: u16| if big_endian { v.to_be_bytes() } else { v.to_le_bytes() };
     let u32b = |v: u32| if big_endian { v.to_be_bytes() } else { v.to_le_bytes() };
     let mut fields = fields.to_vec();
-    if fields.iter().all(|f| f.0 != 273) {
+    if fields.iter().all(|f| f.0 != 273 && f.0 != 324) {
         fields.push((273, Field::Long(vec![8])));
         fields.push((279, Field::Long(vec![strip.len() as u32])));
     }
@@ -160,4 +160,25 @@ pub fn group4(width: usize, height: usize, ink: impl Fn(usize, usize) -> bool) -
         encoder.encode_line(row, width as u16).unwrap();
     }
     encoder.finish().unwrap().finish()
+}
+
+/// A PDF of pages: what is drawn on each, its width and height in points, and further entries of its dictionary.
+pub fn pdf(pages: &[(&str, u32, u32, &str)]) -> Vec<u8> {
+    let kids: String = (0..pages.len()).map(|i| format!("{} 0 R ", 3 + 2 * i)).collect();
+    let mut objects =
+        vec!["<</Type/Catalog/Pages 2 0 R>>".to_owned(), format!("<</Type/Pages/Count {}/Kids[{kids}]>>", pages.len())];
+    for (i, (content, width, height, more)) in pages.iter().enumerate() {
+        let page = "/Type/Page/Parent 2 0 R/Resources<<>>";
+        objects.push(format!("<<{page}/MediaBox[0 0 {width} {height}]/Contents {} 0 R {more}>>", 4 + 2 * i));
+        objects.push(format!("<</Length {}>>stream\n{content}\nendstream", content.len()));
+    }
+    let mut out = "%PDF-1.4\n".to_owned();
+    let mut table = String::from("0000000000 65535 f \n");
+    for (i, object) in objects.iter().enumerate() {
+        table += &format!("{:010} 00000 n \n", out.len());
+        out += &format!("{} 0 obj\n{object}\nendobj\n", i + 1);
+    }
+    let (start, count) = (out.len(), objects.len() + 1);
+    out += &format!("xref\n0 {count}\n{table}trailer<</Size {count}/Root 1 0 R>>\nstartxref\n{start}\n%%EOF\n");
+    out.into_bytes()
 }

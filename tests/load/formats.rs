@@ -1,6 +1,7 @@
 //! Pixels of each raster format and depth.
 
 use crate::fixtures::{Png, assert_close, blocks, encode, fractions, gray, load};
+use fieldtrace::load::{LoadOptions, load_bytes};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, LumaA, Rgb, RgbImage, Rgba, RgbaImage};
 
 fn png(width: u32, height: u32, depth: u8, color: u8, data: Vec<u8>) -> Vec<u8> {
@@ -57,8 +58,8 @@ fn png_interlaced() {
 #[test]
 fn lossless_formats_keep_grey_and_colour() {
     let color = RgbImage::from_fn(7, 5, |x, y| Rgb([(x * 30) as u8, (y * 50) as u8, 200]));
-    use ImageFormat::{Bmp, Gif, Png, Pnm, Tiff, WebP};
-    for format in [Png, Tiff, WebP, Bmp, Pnm] {
+    use ImageFormat::{Bmp, Gif, Png, Pnm, Qoi, Tiff, WebP};
+    for format in [Png, Tiff, WebP, Bmp, Pnm, Qoi] {
         let scan = load(&encode(color.clone(), format)).scan;
         assert_eq!(scan.rgb.as_ref(), Some(&color), "{format:?}");
         assert_eq!(scan.gray.size(), (7, 5));
@@ -66,24 +67,13 @@ fn lossless_formats_keep_grey_and_colour() {
         assert!((scan.gray[(1, 2)] - expected).abs() < 1e-6, "{format:?}");
     }
     let line = GrayImage::from_fn(9, 4, |x, y| Luma([if x == y { 0 } else { 255 }]));
-    for format in [Png, Tiff, WebP, Bmp, Pnm, Gif] {
+    for format in [Png, Tiff, WebP, Bmp, Pnm, Gif, Qoi] {
         let image = DynamicImage::ImageLuma8(line.clone());
-        let image = if matches!(format, Gif | WebP) { image.to_rgba8().into() } else { image };
+        let image = if matches!(format, Gif | WebP | Qoi) { image.to_rgba8().into() } else { image };
         let scan = load(&encode(image, format)).scan;
         assert_eq!(scan.gray.data(), fractions(&line), "{format:?}");
         assert!(scan.rgb.is_none() && scan.dpi.is_none(), "{format:?}");
     }
-}
-
-#[test]
-fn gif_gives_its_first_frame() {
-    let mut bytes = Vec::new();
-    let mut encoder = image::codecs::gif::GifEncoder::new(&mut bytes);
-    for level in [0, 255] {
-        encoder.encode_frame(image::Frame::new(RgbaImage::from_pixel(3, 2, Rgba([level, level, level, 255])))).unwrap();
-    }
-    drop(encoder);
-    assert_eq!(gray(&bytes), [0.0; 6]);
 }
 
 #[test]
@@ -128,6 +118,57 @@ fn jpeg_in_printing_colours() {
         assert_close(&row, &[1.0, 0.0, 0.2126, 127.0 / 255.0], 0.02);
         assert!(scan.rgb.unwrap().get_pixel(20, 4).0.iter().zip([255u8, 0, 0]).all(|(&a, b)| a.abs_diff(b) < 6));
     }
+}
+
+#[test]
+fn tga_is_told_by_its_footer_or_by_its_name() {
+    let color = RgbImage::from_fn(7, 5, |x, y| Rgb([(x * 30) as u8, (y * 50) as u8, 200]));
+    let mut bytes = encode(color.clone(), ImageFormat::Tga);
+    let read = |name: &str, bytes: &[u8]| load_bytes(name, bytes, &LoadOptions::default()).map(|input| input.scan.rgb);
+    assert_eq!(read("a/DRAWING.TGA", &bytes).unwrap().as_ref(), Some(&color));
+    assert!(read("-", &bytes).is_err());
+    bytes.extend([0; 8]);
+    bytes.extend(b"TRUEVISION-XFILE.\0");
+    assert_eq!(read("-", &bytes).unwrap().as_ref(), Some(&color));
+}
+
+/// Red, green and blue stripes over white, as the fixtures in colour have them.
+fn stripes() -> RgbImage {
+    let colors = [[255, 0, 0], [0, 128, 0], [20, 40, 230]];
+    RgbImage::from_fn(24, 16, |x, y| Rgb(if y < 8 { colors[x as usize / 8] } else { [255; 3] }))
+}
+
+#[track_caller]
+fn assert_stripes(bytes: &[u8], tolerance: u8, inset: u32) {
+    let scan = load(bytes).scan;
+    let (got, expected) = (scan.rgb.expect("colours"), stripes());
+    assert_eq!(got.dimensions(), (24, 16));
+    let inside = |v: u32| v % 8 >= inset && v % 8 < 8 - inset;
+    for (x, y, p) in got.enumerate_pixels().filter(|(x, y, _)| inside(*x) && inside(*y)) {
+        let expected = expected.get_pixel(x, y);
+        assert!(p.0.iter().zip(expected.0).all(|(a, b)| a.abs_diff(b) <= tolerance), "{x} {y}: {p:?} {expected:?}");
+    }
+}
+
+#[test]
+fn jpeg_xl_bare_and_in_its_container() {
+    assert_eq!(gray(include_bytes!("fixtures/grey.jxl")), fractions(&blocks()));
+    assert_stripes(include_bytes!("fixtures/colour.jxl"), 0, 0);
+}
+
+#[test]
+fn jpeg_2000_bare_and_in_its_container() {
+    assert_eq!(gray(include_bytes!("fixtures/grey.jp2")), fractions(&blocks()));
+    assert_stripes(include_bytes!("fixtures/colour.j2k"), 0, 0);
+}
+
+#[cfg(feature = "avif")]
+#[test]
+fn avif_of_several_kinds() {
+    assert_close(&gray(include_bytes!("fixtures/grey.avif")), &fractions(&blocks()), 0.005);
+    assert_close(&gray(include_bytes!("fixtures/deep.avif")), &fractions(&blocks()), 0.005);
+    assert_stripes(include_bytes!("fixtures/colour.avif"), 3, 0);
+    assert_stripes(include_bytes!("fixtures/alpha.avif"), 14, 2);
 }
 
 #[test]

@@ -4,5 +4,7 @@ mod bad;
 mod fixtures;
 mod formats;
 mod metadata;
+mod pages;
+mod sizes;
 mod svg;
 mod tiff;

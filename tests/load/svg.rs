@@ -185,9 +185,9 @@ fn the_strokes_lie_on_the_ink_of_the_rendering() {
 
 #[test]
 fn the_size_of_the_rendering() {
-    let read = |width, height, dpi, size| {
+    let read = |width, height, dpi: Option<f64>, size| {
         let text = document(width, height, "<path d='M0 0L9 5' stroke='black'/>");
-        let options = LoadOptions { dpi, size, ..LoadOptions::default() };
+        let options = LoadOptions { dpi: dpi.map(Into::into), size, ..LoadOptions::default() };
         let scan = load_bytes(&format!("{width} {height}"), text.as_bytes(), &options).unwrap().scan;
         (scan.gray.size(), scan.dpi.unwrap())
     };

@@ -171,6 +171,34 @@ fn every_common_compression() {
 }
 
 #[test]
+fn tiles_of_colours_together_and_apart() {
+    let color = RgbImage::from_fn(37, 23, |x, y| Rgb([(x * 6) as u8, (y * 11) as u8, 90]));
+    let sample = |x: u32, y: u32, c: usize| if x < 37 && y < 23 { color.get_pixel(x, y)[c] } else { 0 };
+    let corners = || (0..23u32).step_by(16).flat_map(|y| (0..37u32).step_by(16).map(move |x| (x, y)));
+    let within = || (0..16u32).flat_map(|y| (0..16u32).map(move |x| (x, y)));
+    let together: Vec<u8> = corners()
+        .flat_map(|(x0, y0)| within().flat_map(move |(x, y)| [0, 1, 2].map(|c| (x0 + x, y0 + y, c))))
+        .map(|(x, y, c)| sample(x, y, c))
+        .collect();
+    let apart: Vec<u8> = (0..3)
+        .flat_map(|c| corners().flat_map(move |(x0, y0)| within().map(move |(x, y)| (x0 + x, y0 + y, c))))
+        .map(|(x, y, c)| sample(x, y, c))
+        .collect();
+    for (planar, count, data) in [(1, 6, together), (2, 18, apart)] {
+        let size = (data.len() / count) as u32;
+        let mut fields = page(37, 23, &[8; 3], 1, 2);
+        fields.retain(|field| field.0 != 278);
+        fields.extend([(284, short(planar)), (322, short(16)), (323, short(16))]);
+        fields.push((324, Field::Long((0..count as u32).map(|i| 8 + i * size).collect())));
+        fields.push((325, Field::Long(vec![size; count])));
+        for big in [false, true] {
+            let rgb = load(&tiff(big, &fields, &data)).scan.rgb;
+            assert_eq!(rgb.as_ref(), Some(&color), "planes {planar}");
+        }
+    }
+}
+
+#[test]
 fn jpeg_inside() {
     let grey = encode(blocks(), image::ImageFormat::Jpeg);
     assert_close(&gray(&tiff(false, &page(24, 16, &[8], 7, 1), &grey)), &fractions(&blocks()), 0.05);
@@ -200,6 +228,8 @@ fn what_is_not_supported_is_named() {
     };
     let huffman = reason(&page(8, 8, &[1], 2, 0));
     assert!(huffman.starts_with("a.tif: ") && huffman.contains("Huffman"), "{huffman}");
+    let zstd = reason(&page(8, 8, &[8], 50000, 1));
+    assert!(zstd.contains("Zstandard") && zstd.contains("save it with LZW"), "{zstd}");
     let mut fields = page(8, 8, &[1], 3, 0);
     fields.push((292, Field::Long(vec![1])));
     assert!(reason(&fields).contains("two-dimensional"), "{}", reason(&fields));

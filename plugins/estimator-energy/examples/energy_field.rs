@@ -7,7 +7,7 @@ use fieldtrace::field::write_npz;
 use fieldtrace::load::{LoadOptions, load};
 use fieldtrace::options::Options;
 use fieldtrace::pipeline::Vectorizer;
-use fieldtrace::write::{SvgOptions, to_svg, write_file};
+use fieldtrace::write::{WriteOptions, to_svg, write_file};
 use fieldtrace_estimator_energy::EnergyEstimator;
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -39,7 +39,7 @@ fn main() -> anyhow::Result<()> {
             write_npz(&vectorizer.field(&scan)?, &mut bytes)?;
             bytes.into_inner()
         }
-        Some("svg") => to_svg(&vectorizer.trace(&scan)?, &SvgOptions::default()).into_bytes(),
+        Some("svg") => to_svg(&vectorizer.trace(&scan)?, &WriteOptions::default()).into_bytes(),
         _ => anyhow::bail!("{}: the output is .npz or .svg", args.output.display()),
     };
     write_file(&args.output, &bytes)?;

@@ -1,7 +1,7 @@
 //! The field of shapes whose directions are known.
 
 use fieldtrace::clean::{Decisions, LineImage, Noise, NoiseMap, clean};
-use fieldtrace::drawing::{Centreline, Color, Drawing, Segment, Stroke};
+use fieldtrace::drawing::{Centreline, Drawing, Segment, Stroke};
 use fieldtrace::estimate::FieldEstimator;
 use fieldtrace::field::{Frame, FrameField, PolyVectorField};
 use fieldtrace::load::Scan;
@@ -19,7 +19,7 @@ fn picture(lines: &[Line]) -> LineImage {
     let mut drawing = Drawing::new(SIZE as f64, SIZE as f64);
     for &line in lines {
         let centreline = Centreline::Path { segments: vec![Segment::Line(line)], closed: false };
-        drawing.strokes.push(Stroke { centreline, width: 5.0, color: Color::BLACK, dashes: None });
+        drawing.strokes.push(Stroke::new(centreline, 5.0));
     }
     clean(&Scan { gray: render(&drawing).map(|i| 1.0 - i), rgb: None, dpi: None }, &Options::default())
 }

@@ -69,7 +69,7 @@ fn add_strokes(path: &usvg::Path, outline: &BezPath, to_pixels: Affine, opacity:
     let line = to_pixels * dashed(outline, stroke);
     let capped = stroke.linecap() != LineCap::Butt;
     let centrelines = subpaths(&line).into_iter().filter_map(|s| centreline(&s, capped));
-    drawing.strokes.extend(centrelines.map(|centreline| Stroke { centreline, width, color, dashes: None }));
+    drawing.strokes.extend(centrelines.map(|centreline| Stroke { color, ..Stroke::new(centreline, width) }));
 }
 
 /// The colour of a paint over white; `None` where it cannot be seen.

@@ -80,7 +80,7 @@ fn shared(rng: &mut impl Rng, drawing: &Drawing, count: usize) -> Vec<Drawing> {
 }
 
 fn stroke(centreline: Centreline, width: f64) -> Stroke {
-    Stroke { centreline, width, color: Color::BLACK, dashes: None }
+    Stroke::new(centreline, width)
 }
 
 /// The width of a pen of its own.

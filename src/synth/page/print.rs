@@ -86,7 +86,7 @@ pub(super) fn highlight(rng: &mut impl Rng, canvas: &mut Canvas) {
             segments: vec![crate::drawing::Segment::Line(Line::new(p - reach, p + reach))],
             closed: false,
         };
-        drawing.strokes.push(Stroke { centreline, width, color: Color::BLACK, dashes: None });
+        drawing.strokes.push(Stroke::new(centreline, width));
         let area = render(&drawing);
         let inner = blur(&area, 2.0);
         let alpha =

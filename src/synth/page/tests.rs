@@ -63,12 +63,10 @@ fn truth_lies_where_the_marks_are() {
 fn a_clean_page_shows_its_drawing() {
     let mut line = Drawing::new(64.0, 64.0);
     let segment = crate::drawing::Segment::Line(kurbo::Line::new((8.0, 32.0), (56.0, 32.0)));
-    line.strokes.push(crate::drawing::Stroke {
-        centreline: crate::drawing::Centreline::Path { segments: vec![segment], closed: false },
-        width: 4.0,
-        color: crate::drawing::Color::BLACK,
-        dashes: None,
-    });
+    line.strokes.push(crate::drawing::Stroke::new(
+        crate::drawing::Centreline::Path { segments: vec![segment], closed: false },
+        4.0,
+    ));
     let ink = render(&line);
     let shown = (0..20).filter(|seed| {
         let mut rng = ChaCha8Rng::seed_from_u64(*seed);

@@ -1,0 +1,62 @@
+//! Strokes of one pen have one width, those of several keep theirs apart.
+
+mod common;
+
+use common::draw::{line, scan, sheet, trace_under};
+use fieldtrace::options::{Options, StrokeWidth};
+use proptest::prelude::*;
+use std::collections::BTreeSet;
+
+/// Hundredths of a pixel of the widths in a drawing.
+fn widths(strokes: &[fieldtrace::Stroke]) -> BTreeSet<i64> {
+    strokes.iter().map(|stroke| (100.0 * stroke.width).round() as i64).collect()
+}
+
+/// Lines at all angles, each with one of the pens.
+fn drawn(pens: &[f64], turn: f64) -> fieldtrace::Drawing {
+    let strokes = (0..12).map(|k| {
+        let (x, y) = (60.0 + 110.0 * f64::from(k % 4), 60.0 + 110.0 * f64::from(k / 4));
+        let along = 40.0 * kurbo::Vec2::from_angle(turn + 0.5 * f64::from(k));
+        line((x - along.x, y - along.y), (x + along.x, y + along.y), pens[k as usize % pens.len()])
+    });
+    sheet(450, 350, strokes.collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn as_many_widths_as_pens(first in 1.6..3.0f64, ratio in 1.45..2.2f64, turn in 0.0..3.0f64, count in 1usize..4) {
+        let pens: Vec<f64> = (0..count as i32).map(|k| first * ratio.powi(k)).collect();
+        let traced = trace_under(Options::default(), &scan(&drawn(&pens, turn)));
+        prop_assert_eq!(traced.strokes.len(), 12);
+        let found = widths(&traced.strokes);
+        prop_assert_eq!(found.len(), count, "{:?} for {:?}", found, pens);
+        for (found, pen) in found.iter().zip(&pens) {
+            prop_assert!((*found as f64 / 100.0 - pen).abs() < 0.06 * pen + 0.1, "{found} for {pen}");
+        }
+    }
+}
+
+#[test]
+fn measured_widths_are_left_as_they_are() {
+    let drawing = scan(&drawn(&[2.0, 2.06, 2.12, 2.18], 0.3));
+    let measured = trace_under(Options { width: StrokeWidth::Measured, ..Options::default() }, &drawing);
+    let snapped = trace_under(Options::default(), &drawing);
+    assert!(widths(&measured.strokes).len() > 3, "{:?}", widths(&measured.strokes));
+    assert_eq!(widths(&snapped.strokes).len(), 1);
+}
+
+#[test]
+fn the_width_of_a_taper_is_its_ink_over_its_length() {
+    let pieces = (0..60).map(|k| {
+        let x = 20.0 + 5.0 * f64::from(k);
+        line((x, 60.0), (x + 5.0, 60.0), 3.6 + 0.03 * f64::from(k))
+    });
+    let drawing = sheet(340, 120, pieces.collect());
+    let traced = trace_under(Options { width: StrokeWidth::Profile, ..Options::default() }, &scan(&drawing));
+    let [stroke] = &traced.strokes[..] else { panic!("{} strokes", traced.strokes.len()) };
+    assert!((stroke.width - 4.49).abs() < 0.2, "{}", stroke.width);
+    let (start, end) = (stroke.width_at(0.1), stroke.width_at(0.9));
+    assert!((start.min(end) - 3.78).abs() < 0.2 && (start.max(end) - 5.19).abs() < 0.3, "{start} {end}");
+}
