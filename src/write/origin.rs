@@ -52,7 +52,7 @@ impl Origin {
         says(&format!("\"program\":\"{}\"", self.program)) && says(&format!("\"options\":{}", self.options))
     }
 
-    /// The text that [`super::WriteOptions::origin`] takes.
+    /// The text that the member `origin` of [`super::WriteOptions`] takes.
     pub fn to_text(&self) -> String {
         serde_json::to_string(self).expect("plain data is always JSON")
     }
