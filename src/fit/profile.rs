@@ -5,9 +5,15 @@ use crate::drawing::Centreline;
 use crate::graph::TrailPoint;
 use kurbo::Shape;
 
-/// A stroke tapers where the middle half of its widths differs by more than this share of their median: ends and junctions
-/// spoil fewer.
-const TAPER: f64 = 0.2;
+/// A stroke tapers where the medians of so many parts of it differ by more than this share of its own.
+const PARTS: usize = 5;
+const TAPER: f64 = 0.3;
+
+fn median(widths: &[f64]) -> f64 {
+    let mut sorted = widths.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
 
 /// Widths along a stroke, as measured; between places where one could be measured they change evenly.
 pub(super) struct Profile {
@@ -45,11 +51,10 @@ impl Profile {
         let ends = self.at[0] * self.widths[0] + (1.0 - self.at[last]) * self.widths[last];
         let pieces = self.at.windows(2).zip(self.widths.windows(2));
         let mean = ends + pieces.map(|(s, w)| 0.5 * (s[1] - s[0]) * (w[0] + w[1])).sum::<f64>();
-        let mut sorted = self.widths.clone();
-        sorted.sort_by(f64::total_cmp);
-        let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share).round() as usize];
-        let median = at(0.5);
-        if at(0.75) - at(0.25) > TAPER * median { mean } else { median }
+        let median = median(&self.widths);
+        let parts = self.widths.chunks(self.widths.len().div_ceil(PARTS)).map(self::median);
+        let (least, most) = parts.fold((median, median), |(least, most), w| (least.min(w), most.max(w)));
+        if most - least > TAPER * median { mean } else { median }
     }
 
     /// Widths at even distances of about half a line width along a centreline, both ends included.
