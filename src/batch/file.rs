@@ -75,11 +75,13 @@ impl FileTracer {
         let pages = pages_of_bytes(&job.input.display().to_string(), &bytes, &self.load)?;
         let mut sum = Count::default();
         let mut outputs = Vec::new();
+        // The hash of a long document is taken once.
+        let whole = self.origin(&bytes, None);
         let mut first = None;
         for (number, page) in pages.iter() {
             let Input { scan, frame, .. } = page?;
             let (several, output) = output_of(&pages, number, &job.output);
-            let origin = self.origin(&bytes, several);
+            let origin = Origin { page: several, ..whole.clone() };
             let mut watch = Watch { scan: &scan, count: Count::default(), cancel: cancel.clone() };
             let graph = self.vectorizer.graph(&scan, &mut watch)?;
             let drawing = self.vectorizer.draw(&graph, &mut watch)?;
@@ -93,7 +95,7 @@ impl FileTracer {
             outputs.push(output);
             first.get_or_insert(origin);
         }
-        let origin = Box::new(first.unwrap_or_else(|| self.origin(&bytes, None)));
+        let origin = Box::new(first.unwrap_or(whole));
         let Count { strokes, fills, junctions, unlike } = sum;
         Ok(Traced::Drawn { strokes, fills, junctions, unlike, outputs, origin })
     }

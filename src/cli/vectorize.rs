@@ -72,9 +72,10 @@ struct Job<'a> {
     stages: Stages,
 }
 
-impl Job<'_> {
-    fn failed(&self) -> impl Fn(Error) -> Failure + '_ {
-        |e| Failure::of(self.name, &e)
+impl<'a> Job<'a> {
+    fn failed(&self) -> impl Fn(Error) -> Failure + Copy + use<'a> {
+        let name = self.name;
+        move |e| Failure::of(name, &e)
     }
 
     /// What cannot be done with more than one page.
@@ -98,11 +99,11 @@ impl Job<'_> {
         output: &Path,
         graph_path: Option<&Path>,
     ) -> Result<(), Failure> {
+        let failed = self.failed();
         let (scan, frame) = (&input.scan, input.frame.clone());
         let folder = self.args.out.debug_dir.as_deref();
-        let debug = folder.map(|folder| DebugDir::create(folder, scan)).transpose().map_err(self.failed())?;
+        let debug = folder.map(|folder| DebugDir::create(folder, scan)).transpose().map_err(failed)?;
         let mut watch = Watch { stages: &mut self.stages, debug, streamlines: 0, scan: Some(scan), edge_share: 0.0 };
-        let failed = |e: Error| Failure::of(self.name, &e);
         let graph = self.tracer.vectorizer.graph(scan, &mut watch).map_err(failed)?;
         let drawing = self.tracer.vectorizer.draw(&graph, &mut watch).map_err(failed)?;
         let is_unlike = watch.edge_share > NO_DRAWING;
@@ -125,11 +126,11 @@ impl Job<'_> {
             let what = "--debug-dir lays its pictures over an image, and this is a graph";
             return Err(Failure::Usage(format!("{}: {what}", self.name)));
         }
-        let mut graph = from_json(&self.input.display().to_string(), bytes).map_err(self.failed())?;
+        let failed = self.failed();
+        let mut graph = from_json(&self.input.display().to_string(), bytes).map_err(failed)?;
         graph.page.dpi = self.tracer.load.dpi.map(|dpi| dpi.x).or(graph.page.dpi);
         self.stages.done("load", || format!("{} strokes, {} nodes", graph.trails.len(), graph.graph.node_count()));
         let mut watch = Watch { stages: &mut self.stages, debug: None, streamlines: 0, scan: None, edge_share: 0.0 };
-        let failed = |e: Error| Failure::of(self.name, &e);
         let drawing = self.tracer.vectorizer.draw(&graph, &mut watch).map_err(failed)?;
         let origin = Some(self.tracer.origin(bytes, None).to_text());
         let title = self.input.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -145,7 +146,7 @@ impl Job<'_> {
         output: &Path,
         graph_path: Option<&Path>,
     ) -> Result<(), Failure> {
-        let failed = |e: Error| Failure::of(self.name, &e);
+        let failed = self.failed();
         let document = Document { drawing, graph: Some(graph) };
         if let (Some(path), Some(json)) = (graph_path, format_named("json")) {
             let length = self.tracer.put_as(json, path, &document, options.clone()).map_err(failed)?;

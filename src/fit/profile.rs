@@ -1,5 +1,6 @@
 //! Widths along a stroke.
 
+use super::median_width;
 use crate::clean::unblurred_width;
 use crate::drawing::Centreline;
 use crate::graph::TrailPoint;
@@ -8,12 +9,6 @@ use kurbo::Shape;
 /// A stroke tapers where the medians of so many parts of it differ by more than this share of its own.
 const PARTS: usize = 5;
 const TAPER: f64 = 0.3;
-
-fn median(widths: &[f64]) -> f64 {
-    let mut sorted = widths.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
-}
 
 /// Widths along a stroke, as measured; between places where one could be measured they change evenly.
 pub(super) struct Profile {
@@ -51,8 +46,9 @@ impl Profile {
         let ends = self.at[0] * self.widths[0] + (1.0 - self.at[last]) * self.widths[last];
         let pieces = self.at.windows(2).zip(self.widths.windows(2));
         let mean = ends + pieces.map(|(s, w)| 0.5 * (s[1] - s[0]) * (w[0] + w[1])).sum::<f64>();
-        let median = median(&self.widths);
-        let parts = self.widths.chunks(self.widths.len().div_ceil(PARTS)).map(self::median);
+        let median_of = |widths: &[f64]| median_width(widths.iter().copied()).unwrap_or(mean);
+        let median = median_of(&self.widths);
+        let parts = self.widths.chunks(self.widths.len().div_ceil(PARTS)).map(median_of);
         let (least, most) = parts.fold((median, median), |(least, most), w| (least.min(w), most.max(w)));
         if most - least > TAPER * median { mean } else { median }
     }

@@ -45,7 +45,7 @@ pub(super) fn is_svg(bytes: &[u8]) -> bool {
 /// [`Error::Decode`], [`Error::TooLarge`] and [`Error::NothingVisible`].
 pub(super) fn load(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Input> {
     let text = unpack(name, bytes)?;
-    let tree = parse(name, &text, options)?;
+    let (tree, frame) = parse(name, &text, options)?;
     let scale = scale(&tree, options);
     let canvas = canvas(&tree, scale);
     options.check_size(name, canvas.0, canvas.1)?;
@@ -62,21 +62,19 @@ pub(super) fn load(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<In
     if let Some(corner) = plan.corner() {
         crop(&mut drawing, corner, scan.gray.size());
     }
-    let frame = frame(&text, &tree).filter(|_| plan.corner().is_none());
+    let frame = Some(frame).filter(|_| plan.corner().is_none());
     Ok(Input { scan, drawing: Some(drawing), frame })
 }
 
 /// How an SVG says its size. Without a view box, units are CSS pixels.
-fn frame(text: &[u8], tree: &Tree) -> Option<Frame> {
-    let options = ParsingOptions { allow_dtd: true, ..Default::default() };
-    let document = Document::parse_with_options(std::str::from_utf8(text).ok()?, options).ok()?;
+fn frame(document: &Document, tree: &Tree) -> Frame {
     let root = document.root_element();
     let attribute = |name: &str| root.attribute(name).map(str::to_owned);
     let size = tree.size();
     let whole = [0.0, 0.0, f64::from(size.width()), f64::from(size.height())];
     let own = root.attribute("viewBox").and_then(|text| text.parse::<svgtypes::ViewBox>().ok());
     let view_box = own.map_or(whole, |own| [own.x, own.y, own.w, own.h]);
-    Some(Frame { width: attribute("width"), height: attribute("height"), view_box })
+    Frame { width: attribute("width"), height: attribute("height"), view_box }
 }
 
 fn unpack<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, [u8]>> {
@@ -91,7 +89,8 @@ fn unpack<'a>(name: &str, bytes: &'a [u8]) -> Result<Cow<'a, [u8]>> {
     Ok(Cow::Owned(text))
 }
 
-fn parse(name: &str, text: &[u8], options: &LoadOptions) -> Result<Tree> {
+/// The tree of a text, and how it says its size.
+fn parse(name: &str, text: &[u8], options: &LoadOptions) -> Result<(Tree, Frame)> {
     // `usvg` refuses more than a million elements or a thousand inside one another on its own.
     let mut parser = usvg::Options { image_href_resolver: embedded_images(options.max_pixels), ..Default::default() };
     // Reading the system's fonts takes longer than a whole trace. Where there are none, text is left out.
@@ -99,7 +98,9 @@ fn parse(name: &str, text: &[u8], options: &LoadOptions) -> Result<Tree> {
         parser.fontdb = system_fonts();
     }
     let document = document(name, text)?;
-    Tree::from_xmltree(&document, &parser).map_err(|e| undecodable(name, e))
+    let tree = Tree::from_xmltree(&document, &parser).map_err(|e| undecodable(name, e))?;
+    let frame = frame(&document, &tree);
+    Ok((tree, frame))
 }
 
 /// The elements of a text whose arcs can all be taken apart.
