@@ -34,7 +34,7 @@ fn folder() -> PathBuf {
 
 /// The lightness of a source at one pixel a unit.
 fn rendered(name: &str) -> Result<Raster<f32>, fieldtrace::Error> {
-    let options = LoadOptions { dpi: Some(96.0.into()), ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.dpi = Some(96.0.into()));
     Ok(load(&folder().join(name).with_extension("svg"), &options)?.scan.gray)
 }
 

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 /// How ink is told from paper.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Threshold {
     /// Chosen from the image, locally where the light is uneven.
     #[default]
@@ -17,6 +18,7 @@ pub enum Threshold {
 /// How the ink of the drawing is told from everything else on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Ink {
     /// As with [`Ink::Threshold`] on a clean render, whose paper has nothing else on it, and where both tell the same ink; else
     /// as with [`Ink::Learned`].
@@ -31,6 +33,7 @@ pub enum Ink {
 /// Whether the drawing is light on dark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Invert {
     /// Decided from the image.
     #[default]
@@ -44,6 +47,7 @@ pub enum Invert {
 /// The width that is written for a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum StrokeWidth {
     /// That of the stroke's pen: strokes whose measured widths may be those of one pen share it.
     #[default]
@@ -63,6 +67,7 @@ pub enum StrokeWidth {
 /// What becomes of dashed lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Dashing {
     /// Every dash is a stroke.
     #[default]
@@ -74,6 +79,7 @@ pub enum Dashing {
 /// Up to which width ink is a line; wider ink is a solid region.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum MaxWidth {
     /// Decided from the image: what is long and even is a line.
     #[default]
@@ -89,6 +95,7 @@ pub enum MaxWidth {
 /// What becomes of solid regions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub enum Solids {
     /// They are filled.
     #[default]
@@ -104,6 +111,7 @@ pub enum Solids {
 /// What a trace may be told. The defaults are meant to do well on any drawing.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub struct Options {
     /// Fit tolerance in line widths: how far a fitted curve may leave the measured centreline. Smaller
     /// follows the ink more closely and gives more segments. In `[0.01, 2]`.
@@ -161,6 +169,7 @@ impl Default for Options {
 
 /// Named sets of options for common kinds of drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Preset {
     /// Pencil and ink sketches: looser curves, more specks removed.
     Sketch,
@@ -171,6 +180,13 @@ pub enum Preset {
 }
 
 impl Options {
+    /// The options with some of them set: `Options::default().with(|o| o.gap = Some(2.0))`.
+    #[must_use]
+    pub fn with(mut self, set: impl FnOnce(&mut Self)) -> Self {
+        set(&mut self);
+        self
+    }
+
     /// The options of a preset.
     pub fn preset(preset: Preset) -> Self {
         let default = Self::default();

@@ -106,7 +106,7 @@ fn colours_are_found_on_paper() {
         ];
         let truth = sheet(96, 96, strokes);
         // A pale blue line beside a red one may pass for ruling: here it is a pen.
-        let options = Options { ink: Ink::Threshold, ..Options::default() };
+        let options = Options::default().with(|o| o.ink = Ink::Threshold);
         let result = trace_under(options, &on_paper(&color_scan(&truth, WHITE), paper, 7));
         let mut colors: Vec<Color> = result.strokes.iter().map(|s| s.color).collect();
         ensure(strokes_apart(&truth, &result).max < 1.5, || format!("{:.2?}", strokes_apart(&truth, &result)))?;

@@ -30,7 +30,7 @@ fn folder() -> TempDir {
 /// Draws an SVG's rendering to a file, at a size in pixels.
 fn picture(text: &str, size: u32, path: &Path) {
     use fieldtrace::load::{LoadOptions, load_bytes};
-    let options = LoadOptions { size: Some(size), ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.size = Some(size));
     let gray = load_bytes("drawing", text.as_bytes(), &options).unwrap().scan.gray;
     let bytes = gray.data().iter().map(|v| (255.0 * v).round() as u8).collect();
     image::GrayImage::from_raw(gray.width() as u32, gray.height() as u32, bytes).unwrap().save(path).unwrap();

@@ -109,7 +109,7 @@ fn arcs_of_a_dxf_begin_and_end_where_they_did() {
 
 #[test]
 fn curves_of_a_dxf_are_splines_on_request() {
-    let options = WriteOptions { curves: Some(Curves::Bezier), ..WriteOptions::default() };
+    let options = WriteOptions::default().with(|o| o.curves = Some(Curves::Bezier));
     let found = entities(&text(&everything(), "dxf", &options));
     let (_, spline) = found.iter().find(|e| e.0 == "SPLINE").expect("a spline");
     let count = |code| spline.iter().filter(|pair| pair.0 == code).count();
@@ -121,7 +121,7 @@ fn curves_of_a_dxf_are_splines_on_request() {
 fn a_pdf_has_the_ink_of_the_drawing() {
     let drawing = everything();
     let pdf = bytes(&drawing, "pdf", &WriteOptions::default());
-    let options = LoadOptions { dpi: Some(127.0.into()), ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.dpi = Some(127.0.into()));
     let scan = load_bytes("out.pdf", &pdf, &options).unwrap().scan;
     assert_eq!(scan.gray.size(), (240, 220));
     let ink = render(&drawing);
@@ -160,7 +160,7 @@ fn geojson_has_lines_points_and_polygons_with_holes() {
 fn points_of_a_csv_are_a_step_apart_and_on_the_lines() {
     let drawing = sheet(200, 100, vec![line((10.0, 20.0), (110.0, 20.0), 3.0), circle((150.0, 50.0), 20.0, 2.0)]);
     for step in [0.5, 2.0, 7.0] {
-        let csv = text(&drawing, "csv", &WriteOptions { step, ..WriteOptions::default() });
+        let csv = text(&drawing, "csv", &WriteOptions::default().with(|o| o.step = step));
         let rows: Vec<Vec<&str>> = csv.lines().map(|row| row.split(',').collect()).collect();
         assert_eq!(rows[0], ["stroke", "x", "y", "width", "color"]);
         let number = |row: &[&str], k: usize| -> f64 { row[k].parse().unwrap() };
@@ -178,7 +178,10 @@ fn points_of_a_csv_are_a_step_apart_and_on_the_lines() {
 
 #[test]
 fn millimetres_need_a_resolution_and_scale_everything() {
-    let options = WriteOptions { units: Units::Millimetres, precision: 3, ..WriteOptions::default() };
+    let options = WriteOptions::default().with(|o| {
+        o.units = Units::Millimetres;
+        o.precision = 3;
+    });
     let mut drawing = sheet(254, 127, vec![line((10.0, 20.0), (110.0, 20.0), 3.0)]);
     let wrong =
         encode(format_named("svg").unwrap(), &Document { drawing: &drawing, graph: None }, &options).unwrap_err();
@@ -193,14 +196,11 @@ fn millimetres_need_a_resolution_and_scale_everything() {
 fn an_svg_of_paths_alone_draws_the_same() {
     let drawing = everything();
     let inks = [Shapes::Plain, Shapes::Path].map(|shapes| {
-        let svg = text(&drawing, "svg", &WriteOptions { shapes, ..WriteOptions::default() });
+        let svg = text(&drawing, "svg", &WriteOptions::default().with(|o| o.shapes = shapes));
         if shapes == Shapes::Path {
             assert!(!["<line", "<circle", "<rect"].iter().any(|element| svg.contains(element)), "{svg}");
         }
-        load_bytes("out.svg", svg.as_bytes(), &LoadOptions { size: Some(240), ..LoadOptions::default() })
-            .unwrap()
-            .scan
-            .gray
+        load_bytes("out.svg", svg.as_bytes(), &LoadOptions::default().with(|o| o.size = Some(240))).unwrap().scan.gray
     });
     let difference: f32 = inks[0].data().iter().zip(inks[1].data()).map(|(a, b)| (a - b).abs()).sum();
     assert!(difference < 3.0, "{difference}");

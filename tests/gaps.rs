@@ -22,7 +22,10 @@ fn page(strokes: Vec<Stroke>) -> Drawing {
 }
 
 fn traced(scan: &Scan, gap: Option<f64>, dashes: Dashing) -> Drawing {
-    let options = Options { gap, dashes, ..Options::default() };
+    let options = Options::default().with(|o| {
+        o.gap = gap;
+        o.dashes = dashes;
+    });
     trace_under(options, scan)
 }
 
@@ -257,7 +260,7 @@ fn uneven_pieces_are_no_dashes() {
 fn a_pattern_survives_the_way_through_files() {
     let pattern = Dashes { dash: 12.0, gap: 8.0, offset: 5.0 };
     let truth = page(vec![dashed(20.0, 3.0, pattern)]);
-    let options = Options { dashes: Dashing::Join, ..Options::default() };
+    let options = Options::default().with(|o| o.dashes = Dashing::Join);
     let vectorizer = Vectorizer::new(options).unwrap();
     let graph = vectorizer.graph(&rendered(&truth), &mut ()).unwrap();
     let read = from_json("graph.json", to_json(&graph).as_bytes()).unwrap();

@@ -59,7 +59,7 @@ fn round_trip(scan: &Scan) -> Result<(), String> {
 fn a_graph_that_nobody_changed_gives_the_same_drawing() {
     let mut cases: Vec<(String, Scan)> = ["leaf.jpg", "kettle.png", "boat.png", "plan.svg"]
         .map(|name| {
-            let options = LoadOptions { dpi: Some(96.0.into()), ..LoadOptions::default() };
+            let options = LoadOptions::default().with(|o| o.dpi = Some(96.0.into()));
             (name.to_string(), load(format!("samples/{name}").as_ref(), &options).unwrap().scan)
         })
         .into();

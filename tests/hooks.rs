@@ -177,11 +177,11 @@ fn an_own_field_and_an_own_estimator_serve() {
 fn options_out_of_range_are_named() {
     let default = Options::default;
     let wrong = [
-        ("detail", Options { detail: 0.0, ..default() }),
-        ("detail", Options { detail: f64::NAN, ..default() }),
-        ("min-length", Options { min_length: -1.0, ..default() }),
-        ("threshold", Options { threshold: Threshold::Fixed(1.0), ..default() }),
-        ("width", Options { width: StrokeWidth::Fixed(0.0), ..default() }),
+        ("detail", default().with(|o| o.detail = 0.0)),
+        ("detail", default().with(|o| o.detail = f64::NAN)),
+        ("min-length", default().with(|o| o.min_length = -1.0)),
+        ("threshold", default().with(|o| o.threshold = Threshold::Fixed(1.0))),
+        ("width", default().with(|o| o.width = StrokeWidth::Fixed(0.0))),
     ];
     for (name, options) in wrong {
         let error = Vectorizer::new(options).err().expect("an error");
@@ -192,10 +192,10 @@ fn options_out_of_range_are_named() {
 #[test]
 fn options_show_in_the_result() {
     let trace = |options| Vectorizer::new(options).unwrap().trace(&cross()).unwrap();
-    let fixed = trace(Options { width: StrokeWidth::Fixed(2.5), ..Options::default() });
+    let fixed = trace(Options::default().with(|o| o.width = StrokeWidth::Fixed(2.5)));
     assert!(fixed.strokes.len() == 2 && fixed.strokes.iter().all(|s| s.width == 2.5));
-    assert!(trace(Options { min_length: 100.0, ..Options::default() }).strokes.is_empty());
+    assert!(trace(Options::default().with(|o| o.min_length = 100.0)).strokes.is_empty());
     let inverted = Scan { gray: cross().gray.map(|g| 1.0 - g), ..cross() };
-    let vectorizer = Vectorizer::new(Options { invert: Invert::Yes, ..Options::default() }).unwrap();
+    let vectorizer = Vectorizer::new(Options::default().with(|o| o.invert = Invert::Yes)).unwrap();
     assert_eq!(vectorizer.trace(&inverted).unwrap().strokes.len(), 2);
 }

@@ -214,7 +214,7 @@ fn fifty_thousand_blobs() {
     let scan =
         scan_of(inked(5 * columns, 5 * blobs / columns, |x, y| (1..3).contains(&(x % 5)) && (1..3).contains(&(y % 5))));
     // To the network, that many specks are a screen.
-    let drawing = trace_under(Options { ink: Ink::Threshold, ..Options::default() }, &scan);
+    let drawing = trace_under(Options::default().with(|o| o.ink = Ink::Threshold), &scan);
     assert_sane(&drawing, &scan);
     // A few neighbours in a row may be taken for one broken line.
     let count = drawing.strokes.len() + drawing.fills.len();

@@ -31,7 +31,7 @@ fn figure() -> Drawing {
 }
 
 fn vectorizer(ink: Ink) -> Vectorizer {
-    Vectorizer::new(Options { ink, ..Options::default() }).unwrap()
+    Vectorizer::new(Options::default().with(|o| o.ink = ink)).unwrap()
 }
 
 /// The figure in one colour of ink on a ground of any colours.

@@ -91,7 +91,7 @@ fn scribble(seed: u64) -> Drawing {
 
 #[track_caller]
 fn check(what: &str, scan: &Scan, ink: Ink) {
-    let vectorizer = Vectorizer::new(Options { ink, ..Options::default() }).unwrap();
+    let vectorizer = Vectorizer::new(Options::default().with(|o| o.ink = ink)).unwrap();
     let mut kept = Kept { scan: Some(scan.clone()), ..Kept::default() };
     let drawing = vectorizer.trace_observed(scan, &mut kept).unwrap();
     let image = kept.image.unwrap();
@@ -143,7 +143,7 @@ fn a_page_of_tones_is_traced_on_its_ink_and_looks_like_no_drawing() {
         let page = tones(seed);
         check("tones", &page, Ink::Auto);
         let mut kept = Kept { scan: Some(page.clone()), ..Kept::default() };
-        let by_darkness = Options { ink: Ink::Threshold, ..Options::default() };
+        let by_darkness = Options::default().with(|o| o.ink = Ink::Threshold);
         Vectorizer::new(by_darkness).unwrap().trace_observed(&page, &mut kept).unwrap();
         assert!(kept.edges > NO_DRAWING, "{:.2} edges", kept.edges);
     }
@@ -181,7 +181,11 @@ fn ink_is_chosen_by_its_colour() {
         Color([255; 3]),
     );
     let colors = |only: &[Color], ignore: &[Color], color_tolerance: f64| {
-        let options = Options { only: only.into(), ignore: ignore.into(), color_tolerance, ..Options::default() };
+        let options = Options::default().with(|o| {
+            o.only = only.into();
+            o.ignore = ignore.into();
+            o.color_tolerance = color_tolerance;
+        });
         let drawing = Vectorizer::new(options).unwrap().trace(&page).unwrap();
         let mut near: Vec<usize> = drawing
             .strokes
@@ -197,5 +201,5 @@ fn ink_is_chosen_by_its_colour() {
     assert_eq!(colors(&[], &[blue], 0.15), [0, 2]);
     assert_eq!(colors(&[Color([255, 80, 80])], &[], 0.02), [] as [usize; 0]);
     assert_eq!(colors(&[Color([255, 80, 80])], &[], 0.3), [0]);
-    assert!(Vectorizer::new(Options { color_tolerance: 1.5, ..Options::default() }).is_err());
+    assert!(Vectorizer::new(Options::default().with(|o| o.color_tolerance = 1.5)).is_err());
 }

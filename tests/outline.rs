@@ -13,7 +13,7 @@ use kurbo::{BezPath, Point, Vec2};
 const CENTER: Point = Point::new(80.2, 79.7);
 
 fn traced(scan: &Scan, width: StrokeWidth) -> Drawing {
-    trace_under(Options { width, ..Options::default() }, scan)
+    trace_under(Options::default().with(|o| o.width = width), scan)
 }
 
 /// A brush that grows evenly from one width to another along an arc that turns by `bend` degrees.

@@ -214,7 +214,7 @@ fn paper_and_pencil_keep_the_drawing() {
 fn bytes(vectorizer: &Vectorizer, scan: &Scan, threads: usize) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     let drawing = pool.install(|| vectorizer.trace(scan)).expect("a trace");
-    to_svg(&drawing, &WriteOptions { precision: 8, ..WriteOptions::default() })
+    to_svg(&drawing, &WriteOptions::default().with(|o| o.precision = 8))
 }
 
 #[test]

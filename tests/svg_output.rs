@@ -141,8 +141,8 @@ proptest! {
         let mut drawing = Drawing::new(200.0, 200.0);
         // Widths tell the strokes apart, since the order changes.
         drawing.strokes = lines.into_iter().enumerate().map(|(i, c)| stroke(c, 0.5 * (i + 1) as f64)).collect();
-        let text = to_svg(&drawing, &WriteOptions { precision, ..WriteOptions::default() });
-        prop_assert_eq!(&text, &to_svg(&drawing, &WriteOptions { precision, ..WriteOptions::default() }));
+        let text = to_svg(&drawing, &WriteOptions::default().with(|o| o.precision = precision));
+        prop_assert_eq!(&text, &to_svg(&drawing, &WriteOptions::default().with(|o| o.precision = precision)));
         prop_assert!(!text.contains("NaN") && !text.contains("inf") && !text.contains("\"-0\""));
         let back = read_back(&text);
         prop_assert_eq!(back.len(), drawing.strokes.len());
@@ -273,7 +273,7 @@ fn each_pen_is_a_layer_and_regions_come_first() {
 #[test]
 fn an_empty_drawing_is_valid() {
     let title = Some("a <b> & \"c\"\u{1}\n".to_string());
-    let text = to_svg(&Drawing::new(7.0, 9.0), &WriteOptions { title, ..WriteOptions::default() });
+    let text = to_svg(&Drawing::new(7.0, 9.0), &WriteOptions::default().with(|o| o.title = title));
     assert!(read_back(&text).is_empty());
     assert!(text.contains("a &lt;b&gt; &amp;") && text.contains(env!("CARGO_PKG_VERSION")), "{text}");
 }
@@ -304,7 +304,7 @@ fn a_stroke_is_walked_from_the_end_that_is_nearer() {
 
 #[test]
 fn title_is_the_first_child() {
-    let options = WriteOptions { title: Some("bird.png".into()), ..WriteOptions::default() };
+    let options = WriteOptions::default().with(|o| o.title = Some("bird.png".into()));
     let text = to_svg(&Drawing::new(5.0, 5.0), &options);
     let second = text.lines().nth(1).unwrap_or_default();
     assert_eq!(second, "<title>bird.png</title>", "{text}");

@@ -41,7 +41,7 @@ proptest! {
 #[test]
 fn measured_widths_are_left_as_they_are() {
     let drawing = scan(&drawn(&[2.0, 2.06, 2.12, 2.18], 0.3));
-    let measured = trace_under(Options { width: StrokeWidth::Measured, ..Options::default() }, &drawing);
+    let measured = trace_under(Options::default().with(|o| o.width = StrokeWidth::Measured), &drawing);
     let snapped = trace_under(Options::default(), &drawing);
     assert!(widths(&measured.strokes).len() > 3, "{:?}", widths(&measured.strokes));
     assert_eq!(widths(&snapped.strokes).len(), 1);
@@ -54,7 +54,7 @@ fn the_width_of_a_taper_is_its_ink_over_its_length() {
         line((x, 60.0), (x + 5.0, 60.0), 4.0 + 0.015 * f64::from(k))
     });
     let drawing = sheet(340, 120, pieces.collect());
-    let traced = trace_under(Options { width: StrokeWidth::Profile, ..Options::default() }, &scan(&drawing));
+    let traced = trace_under(Options::default().with(|o| o.width = StrokeWidth::Profile), &scan(&drawing));
     let [stroke] = &traced.strokes[..] else { panic!("{} strokes", traced.strokes.len()) };
     assert!((stroke.width - 4.44).abs() < 0.2, "{}", stroke.width);
     let (start, end) = (stroke.width_at(0.1), stroke.width_at(0.9));

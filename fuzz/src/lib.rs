@@ -35,7 +35,7 @@ pub fn svg(bytes: &[u8]) {
 }
 
 fn read(bytes: &[u8]) {
-    let options = LoadOptions { max_pixels: MAX_PIXELS, ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.max_pixels = MAX_PIXELS);
     let Ok(input) = load_bytes("fuzz", bytes, &options) else { return };
     let (width, height) = input.scan.gray.size();
     assert!(width > 0 && height > 0 && (width * height) as u64 <= MAX_PIXELS);
@@ -126,24 +126,24 @@ impl Bytes<'_> {
 
     fn options(&mut self) -> Options {
         let (how, what) = (self.next(), self.next());
-        Options {
-            detail: if how & 1 == 0 { 0.1 } else { 0.01 + f64::from(what) / 129.0 },
-            min_length: if how & 2 == 0 { 0.5 } else { f64::from(what) / 32.0 },
-            despeckle: (how & 4 != 0).then_some(what.into()),
-            ink: if what & 1 == 0 { Ink::Auto } else { Ink::Threshold },
-            threshold: if how & 8 == 0 { Threshold::Auto } else { Threshold::Fixed((0.5 + f64::from(what)) / 256.0) },
-            invert: if how & 16 == 0 { Invert::Auto } else { Invert::No },
-            width: match how >> 5 & 3 {
+        Options::default().with(|o| {
+            o.detail = if how & 1 == 0 { 0.1 } else { 0.01 + f64::from(what) / 129.0 };
+            o.min_length = if how & 2 == 0 { 0.5 } else { f64::from(what) / 32.0 };
+            o.despeckle = (how & 4 != 0).then_some(what.into());
+            o.ink = if what & 1 == 0 { Ink::Auto } else { Ink::Threshold };
+            o.threshold =
+                if how & 8 == 0 { Threshold::Auto } else { Threshold::Fixed((0.5 + f64::from(what)) / 256.0) };
+            o.invert = if how & 16 == 0 { Invert::Auto } else { Invert::No };
+            o.width = match how >> 5 & 3 {
                 0 => StrokeWidth::Measured,
                 1 => StrokeWidth::Uniform,
                 2 => StrokeWidth::Fixed(2.0),
                 _ => StrokeWidth::Outline,
-            },
-            gap: (how & 128 != 0).then_some(f64::from(what) / 16.0),
-            dashes: if how & 128 == 0 { Dashing::Keep } else { Dashing::Join },
-            ignore: if what & 2 == 0 { Vec::new() } else { vec![Color([255, 0, 0])] },
-            ..Options::default()
-        }
+            };
+            o.gap = (how & 128 != 0).then_some(f64::from(what) / 16.0);
+            o.dashes = if how & 128 == 0 { Dashing::Keep } else { Dashing::Join };
+            o.ignore = if what & 2 == 0 { Vec::new() } else { vec![Color([255, 0, 0])] };
+        })
     }
 
     fn gray(&mut self, width: usize, height: usize) -> Scan {

@@ -44,6 +44,7 @@ pub struct LineImage {
 
 /// What was decided about a page, so that a user knows which option to move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Decisions {
     /// Whether light was taken for ink.
     pub inverted: bool,

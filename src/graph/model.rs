@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 /// What meets at a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum JunctionKind {
     /// One line ends in the open.
     FreeEnd,

@@ -86,6 +86,7 @@ impl From<&RgbaImage> for Scan {
 
 /// What was read: the image to trace and, where the input was a vector drawing, the truth.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Input {
     /// The image; for an SVG its rendering.
     pub scan: Scan,
@@ -154,7 +155,7 @@ pub fn load_bytes(name: &str, bytes: &[u8], options: &LoadOptions) -> Result<Inp
 /// use fieldtrace::load::{LoadOptions, load_image};
 ///
 /// let image = image::DynamicImage::new_luma8(40, 30);
-/// let part = LoadOptions { crop: Some([10, 5, 20, 15]), dpi: Some(300.0.into()), ..LoadOptions::default() };
+/// let part = LoadOptions::default().with(|o| { o.crop = Some([10, 5, 20, 15]); o.dpi = Some(300.0.into()); });
 /// let scan = load_image("in memory", image, &part)?.scan;
 /// assert_eq!((scan.gray.size(), scan.dpi), ((20, 15), Some(300.0)));
 /// # Ok::<(), fieldtrace::Error>(())

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 /// What a reader of inputs may be told.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub struct LoadOptions {
     /// Most pixels that an image may have, before and after its pixels are made square; checked against the header,
     /// before anything is decoded.
@@ -54,6 +55,13 @@ impl From<f64> for Dpi {
 }
 
 impl LoadOptions {
+    /// The options with some of them set: `LoadOptions::default().with(|o| o.dpi = Some(300.0.into()))`.
+    #[must_use]
+    pub fn with(mut self, set: impl FnOnce(&mut Self)) -> Self {
+        set(&mut self);
+        self
+    }
+
     /// Checks every range.
     ///
     /// # Errors

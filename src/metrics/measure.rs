@@ -12,6 +12,7 @@ use std::time::Instant;
 
 /// The figures of one trace; see [`crate::metrics`] for their definitions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Measurement {
     /// Of the field.
     pub field: AngularError,

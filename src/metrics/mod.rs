@@ -53,6 +53,7 @@ use matching::f1;
 
 /// The figures of a trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LineScore {
     /// Length found within 0.5, 1 and 2 px.
     pub f1: [f64; 3],

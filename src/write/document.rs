@@ -56,6 +56,7 @@ pub enum Curves {
 /// How a drawing is written. Formats take from it what they know.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
 pub struct WriteOptions {
     /// Decimals of coordinates and widths.
     pub precision: usize,
@@ -101,6 +102,13 @@ impl Default for WriteOptions {
 }
 
 impl WriteOptions {
+    /// The options with some of them set: `WriteOptions::default().with(|o| o.precision = 3)`.
+    #[must_use]
+    pub fn with(mut self, set: impl FnOnce(&mut Self)) -> Self {
+        set(&mut self);
+        self
+    }
+
     /// Checks every range.
     ///
     /// # Errors

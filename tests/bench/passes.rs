@@ -55,7 +55,7 @@ fn inputs(folder: &Path, kind: &str) -> Vec<(Scan, Truth)> {
         }
         let scan = load(&folder.join(file), &LoadOptions::default()).ok()?.scan;
         let size = scan.gray.size();
-        let options = LoadOptions { size: u32::try_from(size.0.max(size.1)).ok(), ..LoadOptions::default() };
+        let options = LoadOptions::default().with(|o| o.size = u32::try_from(size.0.max(size.1)).ok());
         let drawing = load(&folder.join(format!("{name}.gt.svg")), &options).ok()?.drawing?;
         Some((scan, Truth::new(&drawing, size)?))
     };

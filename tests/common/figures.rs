@@ -38,7 +38,7 @@ pub fn figures_on<C: Debug + Sync>(
 ) {
     let figure = |case: &C| {
         let truth = draw(case);
-        let options = Options { ink: Ink::Threshold, ..Options::default() };
+        let options = Options::default().with(|o| o.ink = Ink::Threshold);
         let traced = trace_under(options, &scan(case, &truth));
         let fault = rule(case, &truth, &traced).err();
         Figure { label: format!("{case:?}"), truth, traced, fault }

@@ -121,7 +121,7 @@ fn the_option_overrides_the_file() {
     let mut encoder = JpegEncoder::new(&mut bytes);
     encoder.set_pixel_density(PixelDensity::dpi(300));
     blocks().write_with_encoder(encoder).unwrap();
-    let options = LoadOptions { dpi: Some(150.0.into()), ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.dpi = Some(150.0.into()));
     let scan = load_bytes("x.jpg", &bytes, &options).unwrap().scan;
     assert_eq!((scan.dpi, scan.gray.size()), (Some(150.0), (24, 16)));
 }

@@ -36,7 +36,7 @@ fn levels(pages: &Pages) -> Vec<u8> {
 }
 
 fn open<'a>(bytes: &'a [u8], page: Option<usize>) -> Result<Pages<'a>, Error> {
-    pages_of_bytes("a", bytes, &LoadOptions { page, ..LoadOptions::default() })
+    pages_of_bytes("a", bytes, &LoadOptions::default().with(|o| o.page = page))
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn pages_of_a_tiff_without_thumbnails_and_masks() {
 #[test]
 fn one_page_is_read_only_where_it_is_named_or_alone() {
     let bytes = small(&[(10, 2), (30, 2)]);
-    let read = |page| load_bytes("scan.tif", &bytes, &LoadOptions { page, ..LoadOptions::default() });
+    let read = |page| load_bytes("scan.tif", &bytes, &LoadOptions::default().with(|o| o.page = page));
     let error = read(None).unwrap_err();
     assert!(matches!(error, Error::ManyPages { pages: 2, .. }), "{error:?}");
     assert_eq!(error.to_string(), "scan.tif: it has 2 pages (name one with --page)");
@@ -169,13 +169,13 @@ fn pages_of_a_pdf() {
 fn the_size_of_a_rendered_page_follows_the_options() {
     let bytes = pdf(&[("1 0 0 RG 4 w 0 10 m 100 10 l S", 100, 50, "")]);
     let read = |options: LoadOptions| load_bytes("plan.pdf", &bytes, &options);
-    let scan = read(LoadOptions { dpi: Some(72.0.into()), ..LoadOptions::default() }).unwrap().scan;
+    let scan = read(LoadOptions::default().with(|o| o.dpi = Some(72.0.into()))).unwrap().scan;
     assert_eq!((scan.gray.size(), scan.dpi), ((100, 50), Some(72.0)));
     let rgb = scan.rgb.expect("a red line");
     assert_eq!((rgb.get_pixel(50, 40).0, rgb.get_pixel(50, 10).0), ([255, 0, 0], [255; 3]));
-    let scan = read(LoadOptions { size: Some(1000), ..LoadOptions::default() }).unwrap().scan;
+    let scan = read(LoadOptions::default().with(|o| o.size = Some(1000))).unwrap().scan;
     assert_eq!((scan.gray.size(), scan.dpi), ((1000, 500), Some(720.0)));
-    let error = read(LoadOptions { max_pixels: 10_000, ..LoadOptions::default() }).unwrap_err();
+    let error = read(LoadOptions::default().with(|o| o.max_pixels = 10_000)).unwrap_err();
     assert!(matches!(error, Error::TooLarge { width: 417, height: 209, .. }), "{error:?}");
 }
 

@@ -11,7 +11,7 @@ fn read(bytes: &[u8], options: &LoadOptions) -> Scan {
 }
 
 fn crop(part: [u32; 4]) -> LoadOptions {
-    LoadOptions { crop: Some(part), ..LoadOptions::default() }
+    LoadOptions::default().with(|o| o.crop = Some(part))
 }
 
 /// A fax of one bit: 102 x 49 pixels, half an inch each way at 204 x 98 dots per inch, with a black square of a quarter
@@ -74,7 +74,7 @@ fn every_format_tells_both_resolutions() {
 #[test]
 fn the_option_has_both_resolutions_too() {
     let bytes = encode(blocks(), ImageFormat::Png);
-    let options = |x, y| LoadOptions { dpi: Some(Dpi { x, y }), ..LoadOptions::default() };
+    let options = |x, y| LoadOptions::default().with(|o| o.dpi = Some(Dpi { x, y }));
     let scan = read(&bytes, &options(300.0, 150.0));
     assert_eq!((scan.gray.size(), scan.dpi), ((24, 32), Some(300.0)));
     assert!((scan.gray[(20, 28)] - 120.0 / 255.0).abs() < 1e-5 && (scan.gray[(4, 4)] - 0.0).abs() < 1e-5);
@@ -83,7 +83,7 @@ fn the_option_has_both_resolutions_too() {
     let color = encode(RgbImage::from_pixel(4, 4, Rgb([200, 10, 30])), ImageFormat::Png);
     let rgb = read(&color, &options(100.0, 200.0)).rgb.unwrap();
     assert!(rgb.dimensions() == (8, 4) && rgb.pixels().all(|p| p.0 == [200, 10, 30]));
-    let limit = LoadOptions { max_pixels: 700, ..options(300.0, 150.0) };
+    let limit = options(300.0, 150.0).with(|o| o.max_pixels = 700);
     let error = load_bytes("a", &bytes, &limit).unwrap_err();
     assert!(matches!(error, Error::TooLarge { width: 24, height: 32, .. }), "{error:?}");
 }
@@ -119,7 +119,7 @@ fn a_part_outside_is_an_error_that_tells_the_size() {
 fn a_part_of_a_rendering() {
     let text = "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>\
         <g stroke='black'><path d='M10 50H90' stroke-width='4'/><path d='M5 5H20'/></g><rect x='60' y='10' width='9' height='9'/></svg>";
-    let options = LoadOptions { size: Some(100), ..crop([30, 40, 50, 20]) };
+    let options = crop([30, 40, 50, 20]).with(|o| o.size = Some(100));
     let input = load_bytes("a.svg", text.as_bytes(), &options).unwrap();
     assert_eq!(input.scan.gray.size(), (50, 20));
     assert!(input.scan.gray[(25, 10)] == 0.0 && input.scan.gray[(25, 2)] == 1.0);
@@ -128,7 +128,7 @@ fn a_part_of_a_rendering() {
     let line = &drawing.strokes[0].centreline;
     assert!(line.start().distance(kurbo::Point::new(-20.0, 10.0)) < 1e-6, "{line:?}");
     let page = pdf(&[("10 10 20 20 re f", 72, 72, "")]);
-    let options = LoadOptions { dpi: Some(72.0.into()), ..crop([10, 42, 20, 20]) };
+    let options = crop([10, 42, 20, 20]).with(|o| o.dpi = Some(72.0.into()));
     let part = read(&page, &options);
     assert!(part.gray.size() == (20, 20) && part.gray.data().iter().all(|&v| v == 0.0));
 }

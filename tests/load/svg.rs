@@ -14,7 +14,7 @@ fn document(width: u32, height: u32, body: &str) -> String {
 
 /// An SVG of 100 x 100 CSS pixels, rendered at one pixel for each.
 fn read(body: &str) -> Input {
-    let options = LoadOptions { size: Some(100), ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.size = Some(100));
     load_bytes("test.svg", document(100, 100, body).as_bytes(), &options).unwrap()
 }
 
@@ -49,7 +49,7 @@ fn nested_transforms_move_points_and_scale_widths() {
 fn a_view_box_is_a_transform_too() {
     let text = "<svg xmlns='http://www.w3.org/2000/svg' width='50' height='50' viewBox='10 10 20 20'>\
         <path d='M12 14H20' stroke='red' stroke-width='1'/></svg>";
-    let options = LoadOptions { size: Some(200), ..LoadOptions::default() };
+    let options = LoadOptions::default().with(|o| o.size = Some(200));
     let drawing = load_bytes("a", text.as_bytes(), &options).unwrap().drawing.unwrap();
     assert_eq!((drawing.width, drawing.height), (200.0, 200.0));
     let stroke = &drawing.strokes[0];
@@ -166,7 +166,7 @@ fn the_strokes_lie_on_the_ink_of_the_rendering() {
         <circle cx='20' cy='20' r='12'/><path d='M5 60L30 90L40 55Z'/><path d='M50 80h0' stroke-width='6'/>\
         <path d='M60 60C90 50 90 95 60 90' stroke-dasharray='7 5' transform='matrix(1 .2 -.2 1 10 0)'/></g>";
     for size in [100, 333, 800] {
-        let options = LoadOptions { size: Some(size), ..LoadOptions::default() };
+        let options = LoadOptions::default().with(|o| o.size = Some(size));
         let input = load_bytes("a", document(100, 90, body).as_bytes(), &options).unwrap();
         let drawing = input.drawing.unwrap();
         assert_eq!((drawing.width, drawing.height), (input.scan.gray.width() as f64, input.scan.gray.height() as f64));
@@ -187,7 +187,10 @@ fn the_strokes_lie_on_the_ink_of_the_rendering() {
 fn the_size_of_the_rendering() {
     let read = |width, height, dpi: Option<f64>, size| {
         let text = document(width, height, "<path d='M0 0L9 5' stroke='black'/>");
-        let options = LoadOptions { dpi: dpi.map(Into::into), size, ..LoadOptions::default() };
+        let options = LoadOptions::default().with(|o| {
+            o.dpi = dpi.map(Into::into);
+            o.size = size;
+        });
         let scan = load_bytes(&format!("{width} {height}"), text.as_bytes(), &options).unwrap().scan;
         (scan.gray.size(), scan.dpi.unwrap())
     };

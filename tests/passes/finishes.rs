@@ -67,7 +67,7 @@ fn swelling(widest: f64, turn: f64, width: StrokeWidth) -> Figure {
     let brush =
         Drawing { fills: vec![Fill { outline, color: Color::BLACK }], ..page(vec![bar(turn + 90.0, 20.0, 2.0)]) };
     let gray = render(&brush).map(|ink| 1.0 - ink);
-    Figure::walked(&crate::common::draw::scan_of(gray), Options { width, ..Options::default() })
+    Figure::walked(&crate::common::draw::scan_of(gray), Options::default().with(|o| o.width = width))
 }
 
 fn measured(graph: &StrokeGraph) -> usize {
@@ -95,7 +95,7 @@ fn widths_are_measured_again_for_outlines_only() {
 #[test]
 fn an_even_stroke_has_lost_no_widths() {
     for (width, turn) in pairs(&WIDTHS, &[0.0, 30.0, 75.0]) {
-        let outlines = Options { width: StrokeWidth::Outline, ..Options::default() };
+        let outlines = Options::default().with(|o| o.width = StrokeWidth::Outline);
         let figure = Figure::walked(&scan(&page(vec![bar(turn, 45.0, width)])), outlines);
         assert_eq!(figure.changes("taper"), Some(0), "{width} {turn}");
     }
@@ -134,7 +134,7 @@ fn on_a_clean_page_every_gap_was_meant() {
 fn as_wide_a_gap_is_bridged_as_is_asked_for() {
     for (width, paper) in pairs(&WIDTHS[1..], &[1.0, 2.0, 3.0]) {
         for (gap, bridged) in [(paper - 0.5, 0), (paper + 0.5, 1)] {
-            let options = Options { gap: Some(gap), ..Options::default() };
+            let options = Options::default().with(|o| o.gap = Some(gap));
             let figure = Figure::walked(&scan(&broken(width, 20.0, paper * width)), options);
             assert_eq!(figure.changes("gap"), Some(bridged), "{width} {paper} {gap}");
         }

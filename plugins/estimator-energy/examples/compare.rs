@@ -62,7 +62,7 @@ fn of(vectorizer: &Vectorizer, raster: &Path, kind: &str) -> anyhow::Result<Meas
     let name = raster.with_extension("").to_string_lossy().into_owned();
     let truth = PathBuf::from(name.trim_end_matches(kind)).with_extension("gt.svg");
     let size = u32::try_from(scan.gray.width().max(scan.gray.height())).ok();
-    let drawing = load(&truth, &LoadOptions { size, ..LoadOptions::default() })?.drawing;
+    let drawing = load(&truth, &LoadOptions::default().with(|o| o.size = size))?.drawing;
     let truth = drawing.and_then(|d| Truth::new(&d, scan.gray.size()));
     let truth = truth.ok_or_else(|| anyhow::anyhow!("{}: has no true strokes", raster.display()))?;
     Ok(measure(vectorizer, &scan, &truth)?)

@@ -68,7 +68,7 @@ impl Source {
             Self::File(path) => read(&path.display().to_string(), &file(&path)?, options),
             Self::Bytes(bytes) => read(NAME, &bytes, options),
             Self::Image(image, dpi) => {
-                let options = LoadOptions { dpi: options.dpi.or(dpi), ..options.clone() };
+                let options = options.clone().with(|o| o.dpi = options.dpi.or(dpi));
                 load_image(NAME, image, &options).map(scan)
             }
         }
