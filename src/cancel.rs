@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Stops work that polls it: when told to, or when a time has run out. Clones stop together.
 ///

@@ -1,6 +1,8 @@
 //! The result: strokes and filled shapes in pixel coordinates.
 
-use kurbo::{Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, Point, Rect, RoundedRect, Shape, Vec2};
+use kurbo::{
+    Affine, Arc, BezPath, Circle, CubicBez, Line, ParamCurve, PathEl, PathSeg, Point, Rect, RoundedRect, Shape, Vec2,
+};
 use std::fmt;
 use std::str::FromStr;
 
@@ -155,6 +157,24 @@ impl Centreline {
             Self::Circle(c) => c.to_path(1e-3),
             Self::Dot(p) => BezPath::from_vec(vec![PathEl::MoveTo(*p), PathEl::LineTo(*p)]),
         }
+    }
+
+    /// The centreline as cubic Bezier pieces, each starting where the one before ends; those of straight pieces have their
+    /// handles at the thirds. A dot is one piece of no length.
+    pub fn cubics(&self) -> Vec<CubicBez> {
+        if let Self::Dot(p) = self {
+            return vec![CubicBez::new(*p, *p, *p, *p)];
+        }
+        let cubic = |piece: PathSeg| match piece {
+            PathSeg::Line(l) => CubicBez::new(l.p0, l.eval(1.0 / 3.0), l.eval(2.0 / 3.0), l.p1),
+            curve => curve.to_cubic(),
+        };
+        let mut path = self.to_path();
+        // The last piece of a closed chain leads home by itself.
+        if matches!(self, Self::Path { .. }) && self.is_closed() {
+            path.pop();
+        }
+        path.segments().map(cubic).collect()
     }
 
     /// First point of the centreline.

@@ -326,6 +326,18 @@ fn the_field_is_written_in_each_format() {
 }
 
 #[test]
+fn pictures_and_fields_overwrite_nothing_unasked() {
+    let desk = Desk::new();
+    for (command, output) in [("field", "f.npz"), ("field", "f.svg"), ("ink", "ink.png")] {
+        fs::write(desk.path(output), "mine").unwrap();
+        desk.trace(&[command, "drawing.png", "-o", output]).failed(&["exists already", "--force"]);
+        assert_eq!(desk.read(output), "mine");
+        desk.trace(&[command, "drawing.png", "-o", output, "--force"]).done();
+        assert_ne!(fs::read(desk.path(output)).unwrap(), b"mine");
+    }
+}
+
+#[test]
 fn the_field_covers_the_ink() {
     let desk = Desk::new();
     desk.trace(&["field", "drawing.png", "-o", "f.npz"]).done();

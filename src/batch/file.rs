@@ -121,7 +121,7 @@ impl FileTracer {
         origin: &Origin,
     ) -> WriteOptions {
         let mut options = self.write.clone();
-        options.title = path.file_name().filter(|name| *name != "-").map(|name| name.to_string_lossy().into_owned());
+        options.title = title_of(path);
         options.origin = Some(origin.to_text());
         options.frame = frame.filter(|_| options.units == Units::Pixels);
         if self.format.is_on_earth() {
@@ -183,6 +183,11 @@ impl FileTracer {
 /// The number of a page where there are several, and where its drawing goes.
 fn output_of(pages: &Pages, number: usize, output: &Path) -> (Option<usize>, PathBuf) {
     if pages.numbers().count() > 1 { (Some(number), page_path(output, number)) } else { (None, output.to_owned()) }
+}
+
+/// The title of what is made from an input: its name; none from standard input, `-`.
+pub fn title_of(input: &Path) -> Option<String> {
+    input.file_name().filter(|name| *name != "-").map(|name| name.to_string_lossy().into_owned())
 }
 
 /// Where the drawing of a page goes, counted from 1: `out-3.svg` for the third of `out.svg`.

@@ -30,7 +30,7 @@ mod find;
 mod plan;
 mod run;
 
-pub use file::{FileTracer, Traced, page_path};
+pub use file::{FileTracer, Traced, page_path, title_of};
 pub use find::is_pattern;
 pub use plan::{Destination, Job, Plan, Share};
 pub use run::{Batch, Event, Outcome};

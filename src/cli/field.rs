@@ -27,6 +27,7 @@ pub(crate) fn run(args: &FieldArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of(&name, &e);
     let format = format_of(&args.output)?;
     target::keep_input(&args.input, &args.output)?;
+    target::keep_file(&args.output, args.force)?;
     let vectorizer = source::vectorizer(&args.source, &args.clean, None).map_err(failed)?;
 
     let mut stages = Stages::start(args.talk.verbose);

@@ -18,6 +18,7 @@ pub(crate) fn run(args: &InkArgs) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("{}: ink is written as .png", target::name(&args.output))));
     }
     target::keep_input(&args.input, &args.output)?;
+    target::keep_file(&args.output, args.force)?;
     let mut stages = Stages::start(args.talk.verbose);
     let scan = load(&args.input, &args.load.options()).map_err(failed)?.scan;
     stages.done("load", || format!("{} x {} pixels", scan.gray.width(), scan.gray.height()));

@@ -26,10 +26,10 @@ pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// Whether a path has the extension of a file of some kind.
+/// Whether a path is meant as a file: it has the extension of a file of some kind, and is no folder.
 pub(crate) fn is_file_name(path: &Path) -> bool {
     let extension = extension(path);
-    format_named(&extension).is_some() || is_other_kind(&extension)
+    (format_named(&extension).is_some() || is_other_kind(&extension)) && !path.is_dir()
 }
 
 /// Whether an extension is that of files of a kind that is not written.
@@ -75,6 +75,15 @@ pub(crate) fn keep_input(input: &Path, output: &Path) -> Result<(), Failure> {
             "{}: the output would overwrite the input; name another with -o",
             name(output)
         )));
+    }
+    Ok(())
+}
+
+/// Refuses to write over a file of a kind that does not tell who wrote it. An empty one is what a power cut leaves.
+pub(crate) fn keep_file(output: &Path, force: bool) -> Result<(), Failure> {
+    let is_file = output.metadata().is_ok_and(|file| file.is_file() && file.len() > 0);
+    if is_file && !force && !is_stream(output) {
+        return Err(Failure::File(format!("{}: exists already; --force overwrites it", name(output))));
     }
     Ok(())
 }

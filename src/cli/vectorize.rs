@@ -6,7 +6,7 @@ use super::source;
 use super::target;
 use super::watch::{Progress, Stages, Watch};
 use crate::Error;
-use crate::batch::{FileTracer, page_path};
+use crate::batch::{FileTracer, page_path, title_of};
 use crate::drawing::Drawing;
 use crate::graph::StrokeGraph;
 use crate::inspect::{DebugDir, NO_DRAWING};
@@ -133,8 +133,7 @@ impl<'a> Job<'a> {
         let mut watch = Watch { stages: &mut self.stages, debug: None, streamlines: 0, scan: None, edge_share: 0.0 };
         let drawing = self.tracer.vectorizer.draw(&graph, &mut watch).map_err(failed)?;
         let origin = Some(self.tracer.origin(bytes, None).to_text());
-        let title = self.input.file_name().map(|name| name.to_string_lossy().into_owned());
-        let options = WriteOptions { title, origin, ..self.tracer.write.clone() };
+        let options = WriteOptions { title: title_of(self.input), origin, ..self.tracer.write.clone() };
         self.write(&graph, &drawing, options, output, graph_path)
     }
 

@@ -10,7 +10,7 @@ use crate::clean::LineImage;
 use crate::error::Result;
 use crate::options::Options;
 use crate::streamline::Streamline;
-use std::time::Instant;
+use web_time::Instant;
 
 /// What a pass worked on, as it left it.
 #[derive(Clone, Copy, Debug)]

@@ -55,6 +55,7 @@ pub(super) fn decode(name: &str, bytes: &[u8], format: Format, options: &LoadOpt
     let orientation = match format {
         Format::Raster(_) => decoder.orientation().unwrap_or(Orientation::NoTransforms),
         // Decoders of other formats turn the image themselves.
+        #[cfg(feature = "formats")]
         _ => Orientation::NoTransforms,
     };
     let exif = decoder.exif_metadata().ok().flatten();

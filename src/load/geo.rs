@@ -1,6 +1,7 @@
 //! Where on earth a scan lies: GeoTIFF tags (OGC 19-008r4), or a world file beside the image (Esri).
 
 use crate::place::Georeference;
+#[cfg(feature = "files")]
 use image::ImageReader;
 use kurbo::{Affine, Vec2};
 use std::io::Cursor;
@@ -23,6 +24,7 @@ pub fn georeference(path: &Path, bytes: &[u8]) -> Option<Georeference> {
 }
 
 /// The same for the scan that became of the file: a part of it, its pixels perhaps made square.
+#[cfg(feature = "files")]
 pub(crate) fn for_scan(
     whole: Georeference,
     bytes: &[u8],

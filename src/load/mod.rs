@@ -43,6 +43,7 @@ use std::borrow::Cow;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
+#[cfg(feature = "files")]
 pub(crate) use geo::for_scan;
 pub use geo::georeference;
 pub use options::{Dpi, LoadOptions};

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 
 /// What a reader of inputs may be told.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub struct LoadOptions {
     /// Most pixels that an image may have, before and after its pixels are made square; checked against the header,

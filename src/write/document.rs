@@ -19,7 +19,7 @@ pub struct Document<'a> {
 /// The unit of coordinates, lengths and widths in formats that know none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Units {
     /// Pixels of the input.
     #[default]
@@ -31,7 +31,7 @@ pub enum Units {
 /// The elements that an SVG is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Shapes {
     /// Each stroke in its plainest form: line, circle, rectangle or path.
     #[default]
@@ -43,7 +43,7 @@ pub enum Shapes {
 /// The kinds of pieces that strokes are written with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Curves {
     /// Lines, arcs and cubic Bezier curves, as they were fitted.
     Bezier,
@@ -55,7 +55,7 @@ pub enum Curves {
 
 /// How a drawing is written. Formats take from it what they know.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub struct WriteOptions {
     /// Decimals of coordinates and widths.

@@ -1,7 +1,7 @@
 //! Lines and solid regions of a drawing.
 
-use fieldtrace::kurbo::{self, BezPath, PathEl, PathSeg, Point, Shape};
-use fieldtrace::{Centreline, Drawing, Segment};
+use fieldtrace::kurbo::{self, BezPath, PathEl, Point, Shape};
+use fieldtrace::{Centreline, Drawing};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -42,8 +42,8 @@ impl Stroke {
     /// points and its end. Lines and arcs are curves like any other here; a dot is one curve of no length.
     #[getter]
     fn beziers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let cubics = cubics(&self.stroke().centreline);
-        let numbers = cubics.iter().flatten().flat_map(|p| [p.x, p.y]).collect();
+        let cubics = self.stroke().centreline.cubics();
+        let numbers = cubics.iter().flat_map(|c| [c.p0, c.p1, c.p2, c.p3]).flat_map(|p| [p.x, p.y]).collect();
         PyArray1::from_vec(py, numbers).reshape([cubics.len(), 4, 2])
     }
 
@@ -167,29 +167,4 @@ fn close(line: &mut Vec<Point>) {
 fn points<'py>(py: Python<'py>, points: &[Point]) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let numbers = points.iter().flat_map(|p| [p.x, p.y]).collect();
     PyArray1::from_vec(py, numbers).reshape([points.len(), 2])
-}
-
-/// The pieces of a line as cubic Bezier curves.
-fn cubics(line: &Centreline) -> Vec<[Point; 4]> {
-    let of_path = |path: &BezPath| path.segments().map(cubic).collect::<Vec<_>>();
-    match line {
-        Centreline::Dot(p) => vec![[*p; 4]],
-        Centreline::Circle(circle) => of_path(&circle.to_path(ROUND)),
-        Centreline::Path { segments, .. } => segments.iter().flat_map(|segment| piece(segment, &of_path)).collect(),
-    }
-}
-
-fn piece(segment: &Segment, of_path: &dyn Fn(&BezPath) -> Vec<[Point; 4]>) -> Vec<[Point; 4]> {
-    let mut path = BezPath::new();
-    path.move_to(segment.start());
-    segment.append_to(&mut path);
-    of_path(&path)
-}
-
-fn cubic(segment: PathSeg) -> [Point; 4] {
-    let cubic = segment.to_cubic();
-    match segment {
-        PathSeg::Line(line) => [line.p0, line.p0.lerp(line.p1, 1.0 / 3.0), line.p0.lerp(line.p1, 2.0 / 3.0), line.p1],
-        _ => [cubic.p0, cubic.p1, cubic.p2, cubic.p3],
-    }
 }

@@ -137,6 +137,9 @@ pub(crate) struct FieldArgs {
     /// input; .png or .svg for a picture
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    /// Overwrite the output where there is a file already
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) load: LoadArgs,
     #[command(flatten)]
@@ -156,6 +159,9 @@ pub(crate) struct InkArgs {
     /// The PNG to write, black where all of a pixel is ink; `-` is standard output
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    /// Overwrite the output where there is a file already
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) load: LoadArgs,
     #[command(flatten)]
