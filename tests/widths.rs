@@ -38,6 +38,21 @@ proptest! {
     }
 }
 
+/// Beside broad lines a page is not enlarged for its fine ones.
+#[test]
+fn fine_lines_beside_broad_ones_stay_whole() {
+    let mut broken = Vec::new();
+    for fine in [1.0, 1.2, 1.4, 1.6, 1.8, 2.0] {
+        for turn in 0..10 {
+            let turn = 0.31 * f64::from(turn) + 0.0116;
+            let strokes = trace_under(Options::default(), &scan(&drawn(&[fine, 2.4, 3.7], turn))).strokes.len();
+            broken.extend((strokes != 12).then(|| format!("{fine} px, turned by {turn:.2}: {strokes} strokes")));
+        }
+    }
+    println!("{}", broken.join("\n"));
+    assert!(broken.is_empty(), "{} of 60 are broken", broken.len());
+}
+
 #[test]
 fn measured_widths_are_left_as_they_are() {
     let drawing = scan(&drawn(&[2.0, 2.06, 2.12, 2.18], 0.3));

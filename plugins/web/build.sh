@@ -10,12 +10,11 @@ tools="$target/wasm-tools"
 if [ "$("$tools/bin/wasm-bindgen" --version 2>/dev/null)" != "wasm-bindgen $version" ]; then
     cargo install --quiet --root "$tools" --version "$version" --target-dir "$target/wasm-tools-build" wasm-bindgen-cli
 fi
-command -v wasm-opt >/dev/null || apt-get install -y -qq --no-install-recommends binaryen >/dev/null
 
 cd "$root"
-RUSTFLAGS="-C target-feature=+simd128" CARGO_TARGET_DIR="$target" \
-    "$here/cargo.sh" build --release --locked -p fieldtrace-web
-"$tools/bin/wasm-bindgen" --target web --out-name fieldtrace --out-dir "$here/pkg" --remove-producers-section \
+# Optimising across crates is what makes the file small.
+export CARGO_PROFILE_RELEASE_LTO=fat CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1 CARGO_PROFILE_RELEASE_PANIC=abort \
+    CARGO_PROFILE_RELEASE_STRIP=true CARGO_TARGET_DIR="$target" RUSTFLAGS="-C target-feature=+simd128"
+"$here/cargo.sh" build --release --locked -p fieldtrace-web
+"$tools/bin/wasm-bindgen" --target web --out-name fieldtrace --out-dir "$here/pkg" --remove-producers-section --remove-name-section \
     "$target/wasm32-unknown-unknown/release/fieldtrace_web.wasm"
-wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int --enable-sign-ext --enable-mutable-globals --enable-reference-types --enable-multivalue \
-    "$here/pkg/fieldtrace_bg.wasm" -o "$here/pkg/fieldtrace_bg.wasm"

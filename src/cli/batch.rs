@@ -30,7 +30,7 @@ pub(crate) fn is_meant(args: &TraceArgs) -> bool {
 pub(crate) fn run(args: &TraceArgs) -> Result<(), Failure> {
     let failed = |e: Error| Failure::of("batch", &e);
     refuse_for_several(args)?;
-    let named = args.output.as_deref().filter(|output| target::is_file_name(output));
+    let named = args.output.as_deref().filter(|output| target::names_file(output));
     let format = args.out.format(named)?;
     let plan = plan(args, format.name())?;
     let vectorizer = source::vectorizer(&args.source, &args.clean, Some((&args.fit, format))).map_err(failed)?;
@@ -79,11 +79,11 @@ fn plan(args: &TraceArgs, extension: &str) -> Result<Plan, Failure> {
         inputs.extend(read.map_err(|cause| failed(Error::Read { input: target::name(manifest), cause }))?);
     }
     let plan = match (&inputs[..], &args.output) {
-        ([input], Some(output)) if target::is_file_name(output) && is_one(args, input) => {
+        ([input], Some(output)) if target::names_file(output) && is_one(args, input) => {
             target::keep_input(input, output)?;
             Plan { jobs: vec![Job { input: input.clone(), output: output.clone() }], ..Plan::default() }
         }
-        (_, Some(output)) if target::is_file_name(output) => {
+        (_, Some(output)) if target::names_file(output) => {
             let name = target::name(output);
             return Err(Failure::Usage(format!("{name}: a batch is written to a folder, not to a file")));
         }

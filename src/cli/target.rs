@@ -26,10 +26,15 @@ pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// Whether a path is meant as a file: it has the extension of a file of some kind, and is no folder.
+/// Whether a path has the extension of a file of some kind.
 pub(crate) fn is_file_name(path: &Path) -> bool {
     let extension = extension(path);
-    (format_named(&extension).is_some() || is_other_kind(&extension)) && !path.is_dir()
+    format_named(&extension).is_some() || is_other_kind(&extension)
+}
+
+/// Whether a path stands for one file: it has the extension of one, and is no folder.
+pub(crate) fn names_file(path: &Path) -> bool {
+    is_file_name(path) && !path.is_dir()
 }
 
 /// Whether an extension is that of files of a kind that is not written.

@@ -257,7 +257,7 @@ impl<'a, 'b> Walker<'a, 'b> {
             return None;
         }
         let normal = heading.turn_90();
-        let inked = self.image.goes_on(point, heading, self.core);
+        let inked = self.image.goes_on(point, heading, self.width, self.core);
         let profile = self.profile(point, normal).filter(|_| inked)?;
         if coasting {
             return Some(Step { point, heading, width: f64::NAN, drift: 0.0 });
