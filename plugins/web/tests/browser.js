@@ -89,13 +89,23 @@ export async function redrawn(page, act) {
     }
 }
 
+/** Where the picture lies on the screen: the place of its corner, and its scale. */
+const frame = (page) =>
+    page.locator("#sheet").evaluate((sheet) => {
+        const { left, top, width } = sheet.getBoundingClientRect();
+        return [left, top, width / sheet.offsetWidth];
+    });
+
 /** The place on the screen of a place in the picture. */
 export async function onScreen(page, [x, y]) {
-    return page.locator("#sheet").evaluate((sheet, [x, y]) => {
-        const { left, top, width } = sheet.getBoundingClientRect();
-        const scale = width / sheet.offsetWidth;
-        return [left + x * scale, top + y * scale];
-    }, [x, y]);
+    const [left, top, scale] = await frame(page);
+    return [left + x * scale, top + y * scale];
+}
+
+/** The place in the picture of a place on the screen. */
+export async function inPicture(page, [x, y]) {
+    const [left, top, scale] = await frame(page);
+    return [(x - left) / scale, (y - top) / scale];
 }
 
 /** Clicks a place in the picture. */

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
-import { SAMPLES, changed, choose, clickAt, counts, graphOf, onScreen, painted, picture, redrawn, start, svgOf, text } from "./browser.js";
+import { SAMPLES, changed, choose, clickAt, counts, graphOf, inPicture, onScreen, painted, picture, redrawn, start, svgOf, text } from "./browser.js";
 import { ends, nodeAt, points } from "../page/edits.js";
 import { doubtful } from "../page/pairing.js";
 import { elements } from "./svg.js";
@@ -58,8 +58,9 @@ test("strokes are coloured by stroke, by pen, by width, and as their ink", async
 test("the wheel zooms in on the place under the pointer, up to control points, and a drag moves the picture", async () => {
     await choose(page, `${SAMPLES}kettle.png`);
     await page.selectOption("#coloring", "width");
-    const place = middle(await graphOf(page), 5);
-    const [x, y] = await onScreen(page, place);
+    // Wheels tell their place in whole pixels.
+    const [x, y] = (await onScreen(page, middle(await graphOf(page), 5))).map(Math.round);
+    const place = await inPicture(page, [x, y]);
     await page.mouse.move(x, y);
     const before = (await painted(page)).colors;
     for (let i = 0; i < 6; i += 1) await page.mouse.wheel(0, -200);
@@ -154,6 +155,7 @@ test("fit and widths act on the edited graph, and a shortest stroke on the pictu
     assert.deepEqual([elements(svg).length, ...widths(svg)], [19, 7]);
     const outlines = await redrawn(page, () => page.selectOption("[name=width]", "outline"));
     assert.deepEqual(widths(outlines), [0]);
+    await redrawn(page, () => page.selectOption("[name=width]", "pens"));
     const long = await redrawn(page, () => page.fill("[name=minLength]", "20"));
     assert.ok(elements(long).length < 19);
     // The edit is one step back, with the options of then.
