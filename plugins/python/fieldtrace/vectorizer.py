@@ -192,6 +192,15 @@ def _vectorizer(options: "Dict[str, Any]") -> Vectorizer:
 _kept = functools.lru_cache(maxsize=4, typed=True)(Vectorizer)
 
 
+def _shared(options: "Dict[str, Any]") -> Vectorizer:
+    """A kept one where the options can be compared."""
+    try:
+        hash(tuple(options.values()))
+    except TypeError:
+        return Vectorizer(**options)
+    return _kept(**options)
+
+
 def _several(inputs: Any) -> "list[Any]":
     """One image is a batch of one."""
     single = isinstance(inputs, (str, os.PathLike, bytes, bytearray, memoryview)) or hasattr(inputs, "__array_interface__")
@@ -206,11 +215,7 @@ def trace(image: Image, **options: "Unpack[Options]") -> Drawing:
         drawing = fieldtrace.trace("scan.png", preset="sketch", detail=0.2)
         drawing.save("scan.dxf")
     """
-    try:
-        hash(tuple(options.values()))
-    except TypeError:
-        return Vectorizer(**options).trace(image)
-    return _kept(**options).trace(image)  # type: ignore[arg-type]
+    return _shared(dict(options)).trace(image)
 
 
 def batch(
@@ -240,7 +245,7 @@ def batch(
         for result in fieldtrace.batch("scans", "drawings", preset="sketch"):
             print(result.index, result.input, result.error or result.outputs)
     """
-    return Vectorizer(**options).batch(
+    return _shared(dict(options)).batch(
         inputs,
         output,
         jobs=jobs,
