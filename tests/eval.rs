@@ -232,3 +232,21 @@ fn the_samples_are_found_with_their_truths() {
         assert!(drawing["f1_2"].as_f64().unwrap() > 0.95 && drawing["ink_deg"].as_f64().unwrap() < 6.0, "{drawing}");
     }
 }
+
+#[test]
+fn the_drawings_of_the_guide_are_all_there_and_traced_well() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let report = json(root, &["tests/quality", "--kind", "clean"]);
+    let drawings = report["drawings"].as_array().unwrap();
+    for family in ["lucide-", "technical-"] {
+        let of = drawings.iter().filter(|d| d["name"].as_str().unwrap().starts_with(family));
+        assert_eq!(of.count(), 24);
+    }
+    for drawing in drawings {
+        assert!(drawing["f1_1"].as_f64().unwrap() > 0.99, "{}", drawing["name"]);
+        for end in ["scan.jpg", "hard.jpg"] {
+            let page = root.join(format!("tests/quality/{}.{end}", drawing["name"].as_str().unwrap()));
+            assert!(page.exists() || page.with_extension("png").exists(), "{}", page.display());
+        }
+    }
+}

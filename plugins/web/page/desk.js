@@ -82,7 +82,7 @@ export class Desk extends EventTarget {
             const drawing = await trace(this.picture.blob, { ...options, signal: running.signal, onStage, onStroke });
             this.#history.push({ graph: drawing.graph, options });
             this.#show(drawing);
-            this.#tell("traced");
+            this.#tell("drawn");
             return true;
         } catch (error) {
             if (!running.signal.aborted) this.#tell("error", error.message);
@@ -103,7 +103,10 @@ export class Desk extends EventTarget {
         this.options = options;
         if (!this.picture) return;
         const mustTrace = this.isTracing || !this.graph || asksForTrace(before, options);
-        if (!mustTrace) return this.#step({ graph: this.graph, options });
+        if (!mustTrace) {
+            await this.#step({ graph: this.graph, options });
+            return this.#tell("drawn");
+        }
         const { picture } = this;
         const isTraced = await this.#trace();
         if (isTraced || this.isTracing || this.picture !== picture || !this.#history.now) return;
@@ -119,7 +122,7 @@ export class Desk extends EventTarget {
     #step(state) {
         this.#history.push(state);
         this.#tell("graph");
-        this.#redraw();
+        return this.#redraw();
     }
 
     undo() {

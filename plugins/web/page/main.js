@@ -61,7 +61,7 @@ function showState() {
     set(["join"], isReady && tools.hasOpenStroke);
     set(["previous-junction", "next-junction", "switch"], isReady && tools.junctions > 0);
     for (const button of byId("downloads").children) button.disabled = !isReady;
-    byId("junctions").textContent = `Junction (${tools.junctions} doubtful)`;
+    byId("junctions").textContent = `Junctions: ${tools.junctions}`;
     byId("progress").hidden = !desk.isTracing;
 }
 
@@ -133,7 +133,7 @@ desk.addEventListener("stage", ({ detail }) => {
     byId("progress").firstElementChild.value = Object.keys(STAGES).indexOf(detail) + 0.5;
 });
 desk.addEventListener("found", ({ detail }) => painter.find(detail));
-desk.addEventListener("traced", () => say(`${desk.picture.name}: ${desk.drawing.strokes.length} strokes.`));
+desk.addEventListener("drawn", () => say(`${desk.picture.name}: ${desk.drawing.strokes.length} strokes.`));
 desk.addEventListener("drawing", () => {
     fail("");
     stage.measure(desk.drawing);

@@ -8,7 +8,7 @@ export const SITE = new URL("../site", import.meta.url).pathname;
 export const SAMPLES = new URL("../../../samples/", import.meta.url).pathname;
 
 /** How long a trace may take on a slow machine. */
-export const LONG = 300_000;
+export const LONG = 120_000;
 
 /** Starts a server and a browser; `open(options)` gives a page on it whose errors are collected, `end()` ends all. */
 export async function start() {
@@ -61,33 +61,33 @@ export async function download(page, format) {
     return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
 }
 
-export const graphOf = async (page) => JSON.parse((await download(page, "json")).bytes);
+/** The stroke graph, without what the file says of its making. */
+export async function graphOf(page) {
+    const { origin, ...graph } = JSON.parse((await download(page, "json")).bytes);
+    return graph;
+}
+
 export const svgOf = async (page) => (await download(page, "svg")).bytes.toString();
 
-/** Does something that changes the drawing, and gives the graph once it is another. */
-export async function changed(page, act) {
-    const strip = (graph) => JSON.stringify({ ...graph, origin: null });
-    const before = strip(await graphOf(page));
+/** Does something that changes what `read` gives, and gives that once it is another. */
+async function other(page, read, act) {
+    const before = JSON.stringify(await read(page));
     await act();
-    for (;;) {
+    const end = performance.now() + LONG;
+    while (performance.now() < end) {
         await settle(page);
-        const graph = await graphOf(page);
-        if (strip(graph) !== before) return graph;
+        const now = await read(page);
+        if (JSON.stringify(now) !== before) return now;
         await page.waitForTimeout(50);
     }
+    throw new Error("nothing has changed");
 }
 
-/** Does something that changes the strokes, and gives the SVG once it is another. */
-export async function redrawn(page, act) {
-    const before = await svgOf(page);
-    await act();
-    for (;;) {
-        await settle(page);
-        const svg = await svgOf(page);
-        if (svg !== before) return svg;
-        await page.waitForTimeout(50);
-    }
-}
+/** Does something that changes the graph, and gives it. */
+export const changed = (page, act) => other(page, graphOf, act);
+
+/** Does something that changes the strokes, and gives the SVG. */
+export const redrawn = (page, act) => other(page, svgOf, act);
 
 /** Where the picture lies on the screen: the place of its corner, and its scale. */
 const frame = (page) =>

@@ -114,13 +114,15 @@ test("on a phone: a tap edits, two fingers zoom, one finger moves", async () => 
     const graph = await graphOf(page);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the screen");
     await page.tap("#edit");
-    await page.evaluate(() => scrollTo(0, 0));
     const steam = nodeAt(graph, { stroke: 10, atEnd: true });
-    const [x, y] = await onScreen(page, [steam.x, steam.y - 15]);
-    const fewer = await changed(page, () => page.touchscreen.tap(x, y));
+    const toTop = () => page.evaluate(() => scrollTo(0, 0));
+    const fewer = await changed(page, async () => {
+        await toTop();
+        await page.touchscreen.tap(...(await onScreen(page, [steam.x, steam.y - 15])));
+    });
     assert.equal(fewer.strokes.length, 10);
 
-    await page.evaluate(() => scrollTo(0, 0));
+    await toTop();
     const session = await page.context().newCDPSession(page);
     const touch = (type, ...places) =>
         session.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
-import { SAMPLES, changed, choose, clickAt, counts, graphOf, inPicture, onScreen, painted, picture, redrawn, start, svgOf, text } from "./browser.js";
+import { SAMPLES, changed, choose, clickAt, counts, graphOf, inPicture, longestTask, onScreen, painted, picture, redrawn, start, svgOf, text } from "./browser.js";
 import { ends, nodeAt, points } from "../page/edits.js";
 import { doubtful } from "../page/pairing.js";
 import { elements } from "./svg.js";
@@ -59,7 +59,8 @@ test("the wheel zooms in on the place under the pointer, up to control points, a
     await choose(page, `${SAMPLES}kettle.png`);
     await page.selectOption("#coloring", "width");
     // Wheels tell their place in whole pixels.
-    const [x, y] = (await onScreen(page, middle(await graphOf(page), 5))).map(Math.round);
+    const end = nodeAt(await graphOf(page), { stroke: 5, atEnd: false });
+    const [x, y] = (await onScreen(page, [end.x, end.y])).map(Math.round);
     const place = await inPicture(page, [x, y]);
     await page.mouse.move(x, y);
     const before = (await painted(page)).colors;
@@ -76,6 +77,33 @@ test("the wheel zooms in on the place under the pointer, up to control points, a
     assert.ok(Math.abs(moved[0] - x - 90) < 2 && Math.abs(moved[1] - y - 40) < 2);
     await page.click("#zoom-fit");
     assert.ok(Math.hypot(...(await onScreen(page, place)).map((v, i) => v - [x, y][i])) < 1);
+});
+
+test("thousands of strokes stay smooth", async () => {
+    const many = await picture(page, { name: "many.png", width: 2000, height: 1000 }, (context) => {
+        context.lineWidth = 3;
+        for (let y = 10; y < 1000; y += 20) {
+            for (let x = 10; x < 2000; x += 20) {
+                context.beginPath();
+                context.moveTo(x - 5, y + 4);
+                context.quadraticCurveTo(x, y - 8, x + 5, y + 4);
+                context.stroke();
+            }
+        }
+    });
+    await choose(page, many);
+    const longest = await longestTask(page, async () => {
+        await page.mouse.move(400, 400);
+        await page.mouse.down();
+        for (let i = 0; i < 10; i += 1) await page.mouse.move(400 + 10 * i, 400);
+        await page.mouse.up();
+        for (let i = 0; i < 5; i += 1) await page.mouse.wheel(0, -100);
+        await page.click("#edit");
+        await frame();
+    });
+    console.log(`${await text(page, "#status")} Longest task of pan, zoom and marks: ${longest.toFixed(0)} ms`);
+    assert.equal((await graphOf(page)).strokes.length, 5000);
+    assert.ok(longest < 1000);
 });
 
 test("a junction of low confidence is switched with a click, and undo and redo go back and forth", async () => {
