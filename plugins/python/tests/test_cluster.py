@@ -52,7 +52,7 @@ def check(output, paths):
     assert sum(error.startswith("InputError: ") for _, error in rows.values()) == len(paths) // 100
 
 
-def wait_for(condition, seconds=80):
+def wait_for(condition, seconds=300):
     deadline = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < deadline, "waited in vain"
