@@ -69,18 +69,23 @@ export async function graphOf(page) {
 
 export const svgOf = async (page) => (await download(page, "svg")).bytes.toString();
 
-/** Does something that changes what `read` gives, and gives that once it is another. */
-async function other(page, read, act) {
-    const before = JSON.stringify(await read(page));
-    await act();
+/** Waits until what `read` gives of the page is as it should be, and gives it. */
+export async function until(page, read, isDone) {
     const end = performance.now() + LONG;
     while (performance.now() < end) {
         await settle(page);
         const now = await read(page);
-        if (JSON.stringify(now) !== before) return now;
+        if (isDone(now)) return now;
         await page.waitForTimeout(50);
     }
-    throw new Error("nothing has changed");
+    throw new Error("it does not come to be so");
+}
+
+/** Does something that changes what `read` gives, and gives that once it is another. */
+async function other(page, read, act) {
+    const before = JSON.stringify(await read(page));
+    await act();
+    return until(page, read, (now) => JSON.stringify(now) !== before);
 }
 
 /** Does something that changes the graph, and gives it. */

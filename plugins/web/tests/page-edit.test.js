@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
-import { SAMPLES, changed, choose, clickAt, counts, graphOf, inPicture, longestTask, onScreen, painted, picture, redrawn, start, svgOf, text } from "./browser.js";
+import { SAMPLES, changed, choose, clickAt, counts, graphOf, inPicture, longestTask, onScreen, painted, picture, redrawn, start, svgOf, text, until } from "./browser.js";
 import { ends, nodeAt, points } from "../page/edits.js";
 import { doubtful } from "../page/pairing.js";
 import { elements } from "./svg.js";
@@ -200,12 +200,14 @@ test("broad ink is a line or a region, as the threshold says", async () => {
     });
     await choose(page, bars);
     await page.selectOption("[name=maxWidth]", "number");
-    const set = (value) => page.fill("[name=maxWidthNumber]", value);
-    const both = await redrawn(page, () => set("12"));
-    assert.deepEqual([(await graphOf(page)).strokes.length, (await graphOf(page)).fills.length], [1, 1]);
-    assert.equal(elements(both).length, 2);
-    await redrawn(page, () => set("60"));
-    assert.deepEqual([(await graphOf(page)).strokes.length, (await graphOf(page)).fills.length], [2, 0]);
+    const become = async (value, lines, regions) => {
+        await page.fill("[name=maxWidthNumber]", value);
+        const graph = await until(page, graphOf, ({ strokes, fills }) => strokes.length === lines && fills.length === regions);
+        assert.equal(elements(await svgOf(page)).length, graph.strokes.length + graph.fills.length);
+    };
+    await become("60", 2, 0);
+    await become("12", 1, 1);
+    await become("60", 2, 0);
 });
 
 test("colours are picked on the picture, to draw alone or to leave out", async () => {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { after, afterEach, before, test } from "node:test";
-import { LONG, SAMPLES, choose, download, graphOf, longestTask, painted, picture, settle, start, svgOf, text } from "./browser.js";
+import { LONG, SAMPLES, choose, download, graphOf, longestTask, painted, picture, settle, start, svgOf, text, until } from "./browser.js";
 import { difference, elements } from "./svg.js";
 
 const KETTLE = `${SAMPLES}kettle.png`;
@@ -88,7 +88,7 @@ test("files of each format, with the size in millimetres", async () => {
     assert.match(await svgOf(page), /viewBox="0 0 320 300" width="320"/);
     await page.fill("[name=millimetres]", "80");
     await page.waitForFunction(() => document.querySelector("output[for=millimetres]").value === "80.0 × 75.0 mm at 102 dpi");
-    for (;;) if ((await svgOf(page)).includes("viewBox=\"0 0 80 75\"")) break;
+    await until(page, svgOf, (svg) => svg.includes('viewBox="0 0 80 75"'));
     const svg = await download(page, "svg");
     assert.equal(svg.name, "kettle.svg");
     assert.match(svg.bytes.toString(), /height="75mm".*width="80mm"/);
