@@ -12,6 +12,9 @@ MM = PIXELS / 25.4
 def test_strokes_lie_on_the_curves(traced, any_page, tolerance):
     document = traced("--tolerance", f"{tolerance}mm", any_page)
     drawing = trace(any_page)
+    counts = [len(stroke.points(tolerance * MM / pixel(drawing))) - 1 for stroke in drawing.strokes]
+    # A dot is a segment.
+    assert document.segment_count() == sum(max(count, 1) for count in counts)
     ours = [line for line in all_lines(document) if np.ptp(line, axis=0).max() > 0.01 * pixel(drawing) + 1e-9]
     # Polylines of fieldtrace may leave a curve by half more than their tolerance.
     assert apart(ours, list(curves(drawing))) < 1.6 * tolerance * MM + 0.01
