@@ -28,4 +28,4 @@ page/assemble.sh
 
 node_modules/.bin/tsc --noEmit --strict --target es2022 --module nodenext --lib es2023,dom tests/types.ts
 # One file at a time, since each keeps all cores busy.
-exec node --test --test-concurrency=1 --test-reporter=spec tests/*.test.js
+exec node --test --test-concurrency=1 --test-timeout=900000 --test-reporter=spec tests/*.test.js

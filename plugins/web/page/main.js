@@ -60,7 +60,7 @@ function showState() {
     set(["delete"], isReady && tools.hasShape);
     set(["join"], isReady && tools.hasOpenStroke);
     set(["previous-junction", "next-junction", "switch"], isReady && tools.junctions > 0);
-    for (const button of byId("downloads").children) button.disabled = !isReady;
+    for (const button of byId("downloads").children) button.disabled = desk.drawing === null;
     byId("junctions").textContent = `Junctions: ${tools.junctions}`;
     byId("progress").hidden = !desk.isTracing;
 }

@@ -45,6 +45,7 @@ export const counts = (graph) => [graph.strokes.length, graph.edges.length, grap
 /** Waits until the page has a drawing and nothing runs. */
 export async function settle(page) {
     await page.waitForSelector("#downloads button:not(:disabled)", { timeout: LONG });
+    await page.waitForSelector("#progress", { state: "hidden", timeout: LONG });
 }
 
 /** Gives a picture to the page as a file that was chosen, and waits for its strokes. */
